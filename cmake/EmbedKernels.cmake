@@ -1,0 +1,14 @@
+# Writes OUTPUT: a C++ source with the text of every file of kernels/, found by name at run time.
+#   cmake -DKERNELS=dir -DOUTPUT=file.cpp -P EmbedKernels.cmake
+file(GLOB files ${KERNELS}/*.cl ${KERNELS}/*.h)
+list(SORT files)
+set(text "// Generated from kernels/ by cmake/EmbedKernels.cmake.\n#include \"host/device/kernel_sources.h\"\n\n")
+string(APPEND text "namespace mica {\n\nconst std::map<std::string, std::string>& kernel_sources() {\n")
+string(APPEND text "  static const std::map<std::string, std::string> sources = {\n")
+foreach(file ${files})
+  get_filename_component(name ${file} NAME)
+  file(READ ${file} content)
+  string(APPEND text "      {\"${name}\", R\"kernel(${content})kernel\"},\n")
+endforeach()
+string(APPEND text "  };\n  return sources;\n}\n\n}  // namespace mica\n")
+file(WRITE ${OUTPUT} "${text}")
