@@ -1,0 +1,63 @@
+// Culling on the implicit grid of a normal map: which of a node's sixteen children can matter to a query.
+// [Yan14] sec. 6, with one cutoff on the sum of both Gaussians' exponents in place of five sigma for each.
+#ifndef MICA_MAP_CULL_H
+#define MICA_MAP_CULL_H
+
+#include "types.h"
+#include "wave.h"
+
+// Lower bound of |W (u - mean)|^2 over squares whose lower left corner lies (x, y) texels from the mean.
+static inline wave_float footprint_bound(global const mica_map_query* query, wave_float x, wave_float y, float size) {
+  const wave_float center_x = x + 0.5f * size, center_y = y + 0.5f * size;
+  const wave_float r1 = 0.5f * size * (fabs(query->whiten_1x) + fabs(query->whiten_1y));
+  const wave_float r2 = 0.5f * size * (fabs(query->whiten_2x) + fabs(query->whiten_2y));
+  const wave_float d1 = max(fabs(fma(query->whiten_1x, center_x, query->whiten_1y * center_y)) - r1, 0.0f);
+  const wave_float d2 = max(fabs(fma(query->whiten_2x, center_x, query->whiten_2y * center_y)) - r2, 0.0f);
+  return fma(d1, d1, d2 * d2);
+}
+
+// Bits of the children of `node` that reach the cutoff. The node's lower left corner is (i, j) texels from the
+// footprint's whole-texel mean.
+static inline uint surviving_children(global const mica_map_query* query, global const short* node, int i, int j, int child_size,
+                               WAVE_SHARED int* scratch) {
+  const wave_float s_min = wave_to_float(wave_load_short(node));
+  const wave_float s_max = wave_to_float(wave_load_short(node + 16));
+  const wave_float t_min = wave_to_float(wave_load_short(node + 32));
+  const wave_float t_max = wave_to_float(wave_load_short(node + 48));
+  const float to_bound = (float)MICA_BOUND_ONE / MICA_NORMAL_ONE;
+  const float h_s = query->half_s * to_bound, h_t = query->half_t * to_bound;
+  const wave_float d_s = max(max(s_min - h_s, h_s - s_max), 0.0f);
+  const wave_float d_t = max(max(t_min - h_t, h_t - t_max), 0.0f);
+  const float k = query->inverse_roughness / MICA_BOUND_ONE;
+  const wave_float q_normal = k * k * fma(d_s, d_s, d_t * d_t);
+  const wave_float x = wave_to_float(i + (WAVE_LANE & 3) * child_size) - query->mean_x;
+  const wave_float y = wave_to_float(j + (WAVE_LANE >> 2) * child_size) - query->mean_y;
+  const wave_float q = q_normal + footprint_bound(query, x, y, (float)child_size);
+  return wave_ballot(wave_mask(q <= query->cutoff) & wave_mask(s_min <= s_max), scratch);
+}
+
+// (i, j) of the texel at which a block of the unrolled plane begins, relative to the footprint's mean, and its index
+// in storage. Blocks are counted from the map's origin; periods repeat every blocks_x and blocks_y of them.
+typedef struct {
+  int i, j, index;
+} map_block;
+
+static inline int floor_divide(int a, int b) { return a / b - (a % b < 0); }
+
+static inline map_block locate_block(mica_map_grid grid, global const mica_map_query* query, int block_x, int block_y) {
+  const int period_x = floor_divide(block_x, grid.blocks_x), period_y = floor_divide(block_y, grid.blocks_y);
+  const int inside_x = block_x - period_x * grid.blocks_x, inside_y = block_y - period_y * grid.blocks_y;
+  map_block block;
+  block.i = period_x * grid.width + inside_x * MICA_BLOCK - query->mean_i;
+  block.j = period_y * grid.height + inside_y * MICA_BLOCK - query->mean_j;
+  block.index = inside_y * grid.blocks_x + inside_x;
+  return block;
+}
+
+// Block that holds texel `i` of the unrolled plane.
+static inline int block_of(int i, int size, int blocks) {
+  const int period = floor_divide(i, size);
+  return period * blocks + (i - period * size) / MICA_BLOCK;
+}
+
+#endif  // MICA_MAP_CULL_H

@@ -1,0 +1,63 @@
+// Structs that host and device share: scalar fields only, the same bytes on both sides.
+#ifndef MICA_TYPES_H
+#define MICA_TYPES_H
+
+#ifndef __cplusplus
+#define MICA_INT int
+#define MICA_FLOAT float
+#else
+#include <cstddef>
+#include <cstdint>
+#define MICA_INT std::int32_t
+#define MICA_FLOAT float
+namespace mica::device_types {
+#endif
+
+// Storage of a normal map. A block is 64x64 texels with an apron of one texel below and left, two above and right, so
+// that bilinear and bicubic quads find all their corners in one block.
+enum {
+  MICA_BLOCK = 64,           // texels a side
+  MICA_BLOCK_ROW = 67,       // stored texels a row: apron included
+  MICA_BLOCK_PLANE = 4489,   // stored texels of one component: 67 * 67
+  MICA_BLOCK_STRIDE = 8978,  // ints a block: the s plane, then the t plane
+  MICA_NORMALS_PADDING = 8,  // ints after the last block: whole vectors are read
+  MICA_TILE = 16,            // texels a side; sixteen tiles a block
+  MICA_LEAF = 4,             // texels a side; sixteen leaves a tile
+  MICA_NODE_STRIDE = 64      // shorts a node: s_min[16], s_max[16], t_min[16], t_max[16]
+};
+
+// Normals (s, t) are 32-bit fixed point: the difference of two is exact, and 2^-30 is fine enough for roughness 1e-5.
+#define MICA_NORMAL_ONE 1073741824  // 2^30
+// Bounds are 16-bit fixed point, rounded outwards.
+#define MICA_BOUND_ONE 32767
+
+// The map as the kernels see it. Texels are counted from the bottom left.
+typedef struct {
+  MICA_INT width, height;      // texels
+  MICA_INT blocks_x, blocks_y;  // blocks a period; the last ones may be partly filled
+} mica_map_grid;
+
+// One query in texel units. [Yan14] Eq. 6.
+typedef struct {
+  MICA_INT mean_i, mean_j;        // footprint mean, whole texels, in [0, width) x [0, height)
+  MICA_FLOAT mean_x, mean_y;      // and the rest, in [0, 1)
+  MICA_FLOAT whiten_1x, whiten_1y;  // rows of W with W^T W = covariance^-1: the axes of the
+  MICA_FLOAT whiten_2x, whiten_2y;  // footprint, each divided by its standard deviation in texels
+  MICA_FLOAT extent_x, extent_y;  // half the footprint's bounding box at the cutoff, texels
+  MICA_INT half_s, half_t;        // half vector, fixed point like the normals
+  MICA_FLOAT inverse_roughness;   // 1 / sigma_r
+  MICA_FLOAT scale;               // 1 / (4 pi^2 sqrt(det covariance) sigma_r^2): the peak of G_p G_r
+  MICA_FLOAT cutoff;              // c^2: where |whitened residual|^2 is larger, the integrand counts as zero
+  MICA_INT slot;                  // where the result goes
+} mica_map_query;
+
+#ifdef __cplusplus
+static_assert(sizeof(mica_map_grid) == 16 && offsetof(mica_map_grid, blocks_x) == 8);
+static_assert(sizeof(mica_map_query) == 64 && offsetof(mica_map_query, whiten_1x) == 16 &&
+              offsetof(mica_map_query, half_s) == 40 && offsetof(mica_map_query, slot) == 60);
+}  // namespace mica::device_types
+#endif
+
+#undef MICA_INT
+#undef MICA_FLOAT
+#endif  // MICA_TYPES_H

@@ -1,0 +1,225 @@
+// A wave: sixteen lanes that work on one query, from one source for both kinds of device.
+//
+// MICA_WAVE_ITEMS 0: the lanes are the elements of a float16 in one work-item (CPUs: one vector register).
+// MICA_WAVE_ITEMS 1: the lanes are the sixteen work-items of a work-group (GPUs); control flow is uniform in the group,
+//                    and what lanes tell each other goes through local memory.
+// Masks are integers, -1 or 0 a lane, in both.
+#ifndef MICA_WAVE_H
+#define MICA_WAVE_H
+
+#ifndef MICA_WAVE_ITEMS
+#define MICA_WAVE_ITEMS 0
+#endif
+
+#define WAVE_LANES 16
+
+// Index of the lowest set bit; `bits` is not zero.
+static inline int lowest_bit(uint bits) { return 31 - (int)clz(bits & (0u - bits)); }
+
+#if MICA_WAVE_ITEMS
+
+typedef float wave_float;
+typedef int wave_int;
+#define WAVE_SHARED local
+#define WAVE_DECLARE_SCRATCH(name) local int name[WAVE_LANES]
+#define WAVE_ITEM_INDEX ((int)get_group_id(0))
+#define WAVE_LANE ((int)get_local_id(0))
+#define wave_to_float(x) convert_float(x)
+#define wave_to_int(x) convert_int(x)
+#define wave_bits_of(x) as_int(x)
+#define wave_from_bits(x) as_float(x)
+#define wave_mask(condition) (-(condition))
+
+static inline wave_float wave_select(wave_float otherwise, wave_float chosen, wave_int mask) {
+  return mask ? chosen : otherwise;
+}
+
+// The bits of the lanes whose mask is set.
+static inline uint wave_ballot(wave_int mask, local int* scratch) {
+  scratch[WAVE_LANE] = mask ? (1 << WAVE_LANE) : 0;
+  barrier(CLK_LOCAL_MEM_FENCE);
+  int bits = 0;
+  for (int lane = 0; lane < WAVE_LANES; ++lane) bits |= scratch[lane];
+  barrier(CLK_LOCAL_MEM_FENCE);
+  return (uint)bits;
+}
+
+static inline float wave_sum(wave_float x, local int* scratch) {
+  scratch[WAVE_LANE] = as_int(x);
+  barrier(CLK_LOCAL_MEM_FENCE);
+  for (int half_lanes = WAVE_LANES / 2; half_lanes > 0; half_lanes /= 2) {
+    if (WAVE_LANE < half_lanes)
+      scratch[WAVE_LANE] = as_int(as_float(scratch[WAVE_LANE]) + as_float(scratch[WAVE_LANE + half_lanes]));
+    barrier(CLK_LOCAL_MEM_FENCE);
+  }
+  const float sum = as_float(scratch[0]);
+  barrier(CLK_LOCAL_MEM_FENCE);
+  return sum;
+}
+
+#define wave_rsqrt(x) rsqrt(x)
+
+static inline float wave_max(wave_float x, local int* scratch) {
+  scratch[WAVE_LANE] = as_int(x);
+  barrier(CLK_LOCAL_MEM_FENCE);
+  float largest = as_float(scratch[0]);
+  for (int lane = 1; lane < WAVE_LANES; ++lane) largest = max(largest, as_float(scratch[lane]));
+  barrier(CLK_LOCAL_MEM_FENCE);
+  return largest;
+}
+
+#define wave_load_short(pointer) convert_int((pointer)[WAVE_LANE])
+// Lane (x, y) = (lane & 3, lane >> 2) reads pointer[y * row + x], and its right neighbour.
+#define wave_load_4x4(pointer, row) ((pointer)[(WAVE_LANE >> 2) * (row) + (WAVE_LANE & 3)])
+static inline void wave_load_4x4_pair(global const int* pointer, int row, private wave_int* left,
+                                      private wave_int* right) {
+  *left = wave_load_4x4(pointer, row), *right = wave_load_4x4(pointer + 1, row);
+}
+
+// Writes the lanes in `bits`, packed, to list[0...].
+static inline void wave_pack(local float* list, uint bits, wave_float value) {
+  const uint below = bits & ((1u << WAVE_LANE) - 1u);
+  if ((bits >> WAVE_LANE) & 1u) list[popcount(below)] = value;
+}
+#define wave_list_load(list) ((list)[WAVE_LANE])
+#define wave_list_store(list, value) ((list)[WAVE_LANE] = (value))
+#define wave_list_sync() barrier(CLK_LOCAL_MEM_FENCE)
+
+#else  // one work-item, vectors
+
+typedef float16 wave_float;
+typedef int16 wave_int;
+// The same at any address: some compilers split vload16 and vstore16 into quarters.
+typedef float16 wave_float_anywhere __attribute__((aligned(4)));
+typedef int8 wave_half_int_anywhere __attribute__((aligned(4)));
+typedef short16 wave_short_anywhere __attribute__((aligned(2)));
+#define WAVE_SHARED private
+#define WAVE_DECLARE_SCRATCH(name) int name[1]
+#define WAVE_ITEM_INDEX ((int)get_global_id(0))
+#define WAVE_LANE ((int16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15))
+#define wave_to_float(x) convert_float16(x)
+#define wave_to_int(x) convert_int16(x)
+#define wave_bits_of(x) as_int16(x)
+#define wave_from_bits(x) as_float16(x)
+#define wave_mask(condition) (condition)
+
+static inline wave_float wave_select(wave_float otherwise, wave_float chosen, wave_int mask) {
+  return select(otherwise, chosen, mask);
+}
+
+// x86 has the two primitives that OpenCL lacks: a mask's bits, and packing the chosen lanes to the front.
+#ifndef MICA_AVX512
+#if defined(__AVX512F__) && defined(__AVX512DQ__)
+#define MICA_AVX512 1
+#else
+#define MICA_AVX512 0
+#endif
+#endif
+
+static inline uint wave_ballot(wave_int mask, private int* scratch) {
+  (void)scratch;
+#if MICA_AVX512
+  return (ushort)__builtin_ia32_cvtd2mask512(mask);
+#else
+  const int16 lane_bit = (int16)(1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768);
+  const int16 bits = mask & lane_bit;
+  const int8 b8 = bits.lo | bits.hi;
+  const int4 b4 = b8.lo | b8.hi;
+  const int2 b2 = b4.lo | b4.hi;
+  return (uint)(b2.lo | b2.hi);
+#endif
+}
+
+static inline float wave_sum(wave_float x, private int* scratch) {
+  (void)scratch;
+  const float8 s8 = x.lo + x.hi;
+  const float4 s4 = s8.lo + s8.hi;
+  const float2 s2 = s4.lo + s4.hi;
+  return s2.lo + s2.hi;
+}
+
+// 1 / sqrt(x) of a normal number, relative error 2e-7.
+static inline wave_float wave_rsqrt(wave_float x) {
+#if MICA_AVX512
+  const wave_float y = __builtin_ia32_rsqrt14ps512_mask(x, x, (ushort)0xffff);
+  return y * fma(-0.5f * x * y, y, 1.5f);  // one step of Newton's
+#else
+  return rsqrt(x);
+#endif
+}
+
+static inline float wave_max(wave_float x, private int* scratch) {
+  (void)scratch;
+  const float8 m8 = max(x.lo, x.hi);
+  const float4 m4 = max(m8.lo, m8.hi);
+  const float2 m2 = max(m4.lo, m4.hi);
+  return max(m2.lo, m2.hi);
+}
+
+#define wave_load_short(pointer) convert_int16(*(global const wave_short_anywhere*)(pointer))
+
+// Lane (x, y) = (lane & 3, lane >> 2) reads pointer[y * row + x].
+static inline wave_int wave_load_4x4(global const int* pointer, int row) {
+  return (int16)(vload4(0, pointer), vload4(0, pointer + row), vload4(0, pointer + 2 * row),
+                 vload4(0, pointer + 3 * row));
+}
+
+// The same and its right neighbour; reads eight of each row, so that loads and shuffles are whole registers.
+static inline void wave_load_4x4_pair(global const int* pointer, int row, private wave_int* left,
+                                      private wave_int* right) {
+#define ROW(y) (*(global const wave_half_int_anywhere*)(pointer + (y) * row))
+  const int16 low = (int16)(ROW(0), ROW(1)), high = (int16)(ROW(2), ROW(3));
+#undef ROW
+  *left = shuffle2(low, high, (uint16)(0, 1, 2, 3, 8, 9, 10, 11, 16, 17, 18, 19, 24, 25, 26, 27));
+  *right = shuffle2(low, high, (uint16)(1, 2, 3, 4, 9, 10, 11, 12, 17, 18, 19, 20, 25, 26, 27, 28));
+}
+
+// Writes the lanes in `bits`, packed, to list[0...]; what follows them, up to sixteen in all, is undefined afterwards.
+static inline void wave_pack(private float* list, uint bits, wave_float value) {
+#if MICA_AVX512
+  *(private wave_float_anywhere*)list = __builtin_ia32_compresssf512_mask(value, value, (ushort)bits);
+#else
+  float lanes[WAVE_LANES];
+  vstore16(value, 0, lanes);
+  for (; bits; bits &= bits - 1) *list++ = lanes[lowest_bit(bits)];
+#endif
+}
+#define wave_list_load(list) (*(private const wave_float_anywhere*)(list))
+#define wave_list_store(list, value) (*(private wave_float_anywhere*)(list) = (value))
+#define wave_list_sync()
+
+#endif
+
+// A list of records of several floats, taken off a wave at a time. Field k of record n is records[k * WAVE_LIST + n].
+#define WAVE_LIST (2 * WAVE_LANES)
+typedef struct {
+  WAVE_SHARED float* records;
+  int count;  // less than a wave between appends
+} wave_list;
+
+// Appending the lanes in `bits` is packing every field, then counting once.
+static inline void wave_list_pack(wave_list list, int field, uint bits, wave_float value) {
+  wave_pack(list.records + field * WAVE_LIST + list.count, bits, value);
+}
+static inline void wave_list_count(private wave_list* list, uint bits) {
+  wave_list_sync();
+  list->count += (int)popcount(bits);
+}
+
+// A field of the first sixteen records; lanes past the count hold anything.
+static inline wave_float wave_list_field(wave_list list, int field) {
+  return wave_list_load(list.records + field * WAVE_LIST);
+}
+
+// Drops the first sixteen records.
+static inline void wave_list_drop(private wave_list* list, int fields) {
+  wave_list_sync();
+  for (int field = 0; field < fields; ++field) {
+    const wave_float rest = wave_list_load(list->records + field * WAVE_LIST + WAVE_LANES);
+    wave_list_store(list->records + field * WAVE_LIST, rest);
+  }
+  wave_list_sync();
+  list->count = max(list->count - WAVE_LANES, 0);
+}
+
+#endif  // MICA_WAVE_H
