@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "host/base/error.h"
+#include "host/scene/description.h"
+#include "host/surface/description.h"
+
+namespace mica {
+
+struct ImageSettings {
+  int width = 1280, height = 720;
+  int subpixels = 4;              ///< footprints a pixel and axis [Yan14 sec. 3]
+  std::vector<std::string> aovs;  ///< of: ndf, uv, footprint, normal, queries
+  double exposure = 0;            ///< of the PNG preview, in stops
+};
+
+struct AuditSettings {
+  int samples = 0;  ///< queries of the job that the oracle re-evaluates
+};
+
+/// A validated job: everything in range, every name resolved, every input file present.
+struct Job {
+  std::string path;
+  std::uint64_t hash = 0;  ///< of the text and the overrides
+  std::uint64_t seed = 1;
+  ImageSettings image;
+  SceneDescription scene;
+  std::vector<SurfaceDescription> surfaces;
+  AuditSettings audit;
+};
+
+/// One mistake in a job file or in an override.
+struct JobIssue {
+  std::string file;          ///< the job file as it was named, or `--set key=value`
+  int line = 0, column = 0;  ///< from 1, columns in code points; 0 in an override
+  std::string message;       ///< what was found and what was expected
+};
+
+/// Everything that is wrong with a job: issues of the file by line and column, then those of overrides.
+/// The message has one line an issue, `file:line:column: message`.
+class JobError : public UsageError {
+ public:
+  explicit JobError(std::vector<JobIssue> issues);
+  const std::vector<JobIssue>& issues() const { return issues_; }
+
+ private:
+  std::vector<JobIssue> issues_;
+};
+
+/// Reads and validates a job.
+///
+/// @param path TOML, at most 1 MiB. File names in it are relative to its folder.
+/// @param overrides `key.path=value` of --set, applied in order before validation. A number in the path is an
+/// index,
+///   from 0, into an array (`light.0.position=[0, 0, 4]`). The value is TOML; what is not is taken as a
+///   string.
+/// @throws FileError when `path` cannot be read; JobError with *all* issues otherwise. A file that the job
+/// names
+///   and that is not there is an issue of the job, reported where it is named.
+Job load_job(const std::string& path, const std::vector<std::string>& overrides);
+
+}  // namespace mica

@@ -1,0 +1,93 @@
+#include <fmt/format.h>
+#include <xxhash.h>
+
+#include <cerrno>
+#include <filesystem>
+#include <fstream>
+#include <system_error>
+#include <vector>
+
+#include "host/job/read_job.h"
+#include "host/job/toml_document.h"
+
+namespace mica {
+namespace {
+
+constexpr std::size_t largest_job = 1 << 20;  // bytes
+
+/// Stops soon after the largest size of a job, so that a device that never ends may be named.
+std::string read_text(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  const auto reason = [] { return std::generic_category().message(errno); };
+  if (!file) throw FileError(fmt::format("{}: cannot be opened: {}", path, reason()));
+  std::string text;
+  std::vector<char> block(1 << 14);
+  do {
+    file.read(block.data(), std::streamsize(block.size()));
+    text.append(block.data(), std::size_t(file.gcount()));
+  } while (file && text.size() <= largest_job);
+  if (file.bad()) throw FileError(fmt::format("{}: cannot be read: {}", path, reason()));
+  return text;
+}
+
+toml::table parse_job(const std::string& text, const std::string& path, Issues& issues) {
+  try {
+    if (text.size() <= largest_job) return parse_toml(text, path);
+    issues.add({{1, 1}, {1, 1}, nullptr},
+               fmt::format("found more than {0} bytes; expected at most {0}", largest_job));
+  } catch (const toml::parse_error& error) {
+    issues.add(error.source(), printable(error.description()));
+  }
+  return {};
+}
+
+std::uint64_t hash_of(const std::string& text, const std::vector<std::string>& overrides) {
+  std::string all = text;
+  for (const std::string& item : overrides) all.append(1, '\0').append(item);  // neither can contain a NUL
+  return XXH3_64bits(all.data(), all.size());
+}
+
+ImageSettings read_image(TableReader& table) {
+  ImageSettings image;
+  table.read("width", image.width, closed(1, 16384));
+  table.read("height", image.height, closed(1, 16384));
+  table.read("subpixels", image.subpixels, closed(1, 16));
+  const std::vector<std::string_view> aovs = {"ndf", "uv", "footprint", "normal", "queries"};
+  table.read("aovs", image.aovs, aovs);
+  table.read("exposure", image.exposure, closed(-32, 32));
+  return image;
+}
+
+void read_root(TableReader& table, Job& job) {
+  table.read("seed", job.seed);
+  table.read_table("image", [&](TableReader& image) { job.image = read_image(image); });
+  job.surfaces = read_surfaces(table);
+  job.scene = read_scene(table, job.surfaces);
+  table.read_table("audit",
+                   [&](TableReader& audit) { audit.read("samples", job.audit.samples, closed(0, 1e6)); });
+}
+
+}  // namespace
+
+Job load_job(const std::string& path, const std::vector<std::string>& overrides) {
+  return read_job(read_text(path), path, overrides);
+}
+
+Job read_job(const std::string& text, const std::string& path, const std::vector<std::string>& overrides) {
+  Issues issues(path);
+  Job job;
+  job.path = path;
+  job.hash = hash_of(text, overrides);
+
+  toml::table root = parse_job(text, path, issues);
+  const bool parsed = issues.empty();
+  for (const std::string& item : overrides) apply_override(root, item, issues);
+  if (parsed) {
+    ReadContext context{issues, std::filesystem::path(path).parent_path()};
+    TableReader::read_root(root, context, [&](TableReader& table) { read_root(table, job); });
+  }
+  issues.throw_if_any();
+  return job;
+}
+
+}  // namespace mica

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "host/job/job.h"
+#include "host/job/toml_reader.h"
+
+namespace mica {
+
+/// The job that `text` describes. @param path names it in messages, and its folder is where file names start.
+Job read_job(const std::string& text, const std::string& path, const std::vector<std::string>& overrides);
+
+// What each table of a job means. Values that are wrong are reported to the reader's issues, and the results
+// then are not to be used.
+
+/// All `[surface.NAME]`.
+std::vector<SurfaceDescription> read_surfaces(TableReader& job);
+
+/// All `[material.NAME]`. @param surfaces that they may refer to.
+std::vector<MaterialDescription> read_materials(TableReader& job,
+                                                const std::vector<SurfaceDescription>& surfaces);
+
+/// `[camera]`, `[[shape]]`, `[[light]]`, `[background]` and the materials.
+SceneDescription read_scene(TableReader& job, const std::vector<SurfaceDescription>& surfaces);
+
+}  // namespace mica
