@@ -1,0 +1,132 @@
+#include "host/device/device.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "host/device/binary_cache.h"
+#include "host/device/kernel_sources.h"
+
+namespace mica {
+namespace {
+
+std::vector<cl::Device> all_devices() {
+  std::vector<cl::Device> devices;
+  std::vector<cl::Platform> platforms;
+  try {
+    cl::Platform::get(&platforms);
+  } catch (const cl::Error& error) {
+    if (error.err() != CL_PLATFORM_NOT_FOUND_KHR) throw opencl_error(error, "listing OpenCL platforms");
+  }
+  for (const cl::Platform& platform : platforms) {
+    std::vector<cl::Device> found;
+    try {
+      platform.getDevices(CL_DEVICE_TYPE_ALL, &found);
+    } catch (const cl::Error& error) {
+      if (error.err() != CL_DEVICE_NOT_FOUND) throw opencl_error(error, "listing OpenCL devices");
+    }
+    devices.insert(devices.end(), found.begin(), found.end());
+  }
+  return devices;
+}
+
+DeviceInfo describe(const cl::Device& device) {
+  DeviceInfo info;
+  info.name = device.getInfo<CL_DEVICE_NAME>();
+  info.vendor = device.getInfo<CL_DEVICE_VENDOR>();
+  info.platform = cl::Platform(device.getInfo<CL_DEVICE_PLATFORM>()).getInfo<CL_PLATFORM_NAME>();
+  info.version = device.getInfo<CL_DEVICE_VERSION>();
+  info.driver = device.getInfo<CL_DRIVER_VERSION>();
+  info.is_cpu = (device.getInfo<CL_DEVICE_TYPE>() & CL_DEVICE_TYPE_CPU) != 0;
+  info.compute_units = device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
+  info.global_bytes = device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();
+  info.allocation_bytes = device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
+  info.local_bytes = device.getInfo<CL_DEVICE_LOCAL_MEM_SIZE>();
+  info.work_group_size = device.getInfo<CL_DEVICE_MAX_WORK_GROUP_SIZE>();
+  return info;
+}
+
+cl::Device choose(int index) {
+  const std::vector<cl::Device> devices = all_devices();
+  if (devices.empty())
+    throw DeviceError("no OpenCL device found; on Debian `apt install pocl-opencl-icd` adds the CPU as one");
+  if (index < 0 || index >= static_cast<int>(devices.size()))
+    throw DeviceError(
+        fmt::format("there is no OpenCL device {}; `mica devices` lists 0 to {}", index, devices.size() - 1));
+  return devices[index];
+}
+
+}  // namespace
+
+std::vector<DeviceInfo> list_devices() {
+  std::vector<DeviceInfo> infos;
+  for (const cl::Device& device : all_devices()) infos.push_back(describe(device));
+  return infos;
+}
+
+Device::Device(int index) : device_(choose(index)), info_(describe(device_)) {
+  try {
+    context_ = cl::Context(device_);
+    queue_ = cl::CommandQueue(context_, device_, CL_QUEUE_PROFILING_ENABLE);
+  } catch (const cl::Error& error) {
+    throw opencl_error(error, "opening OpenCL device " + info_.name);
+  }
+}
+
+cl::Program Device::program(const std::string& file, const std::string& options) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const auto found = programs_.find(file + options);
+  if (found != programs_.end()) return found->second;
+
+  const std::string source = expand_kernel_source(file);
+  const BinaryCache cache(info_, source, options);
+  cl::Program program;
+  if (!cache.load(context_, device_, &program)) {
+    program = cl::Program(context_, source);
+    try {
+      program.build({device_}, options.c_str());
+    } catch (const cl::Error& error) {
+      throw DeviceError(fmt::format("{}\n{}", opencl_error(error, "building " + file + " " + options).what(),
+                                    program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device_)));
+    }
+    cache.store(program);
+    spdlog::debug("built {} {}", file, options);
+  }
+  return programs_.emplace(file + options, program).first->second;
+}
+
+cl::Kernel Device::kernel(const std::string& file, const std::string& name, const std::string& options) {
+  return kernel(file, name, options, wave_form());
+}
+
+cl::Kernel Device::kernel(const std::string& file, const std::string& name, const std::string& options,
+                          WaveForm form) {
+  const std::string wave = form == WaveForm::items ? " -DMICA_WAVE_ITEMS=1" : " -DMICA_WAVE_ITEMS=0";
+  try {
+    return cl::Kernel(program(file, "-cl-std=CL1.2 " + options + wave), name.c_str());
+  } catch (const cl::Error& error) {
+    throw opencl_error(error, fmt::format("creating kernel {} of {}", name, file));
+  }
+}
+
+cl::Buffer Device::buffer(std::size_t bytes, cl_mem_flags flags, const std::string& what) const {
+  if (bytes > info_.allocation_bytes)
+    throw DeviceError(fmt::format("{} takes {} MiB in one buffer, but {} allows {} MiB", what, bytes >> 20,
+                                  info_.name, info_.allocation_bytes >> 20));
+  try {
+    return cl::Buffer(context_, flags, std::max<std::size_t>(bytes, 1));
+  } catch (const cl::Error& error) {
+    throw opencl_error(error, fmt::format("allocating {} ({} bytes)", what, bytes));
+  }
+}
+
+cl::Buffer Device::upload_bytes(const void* data, std::size_t bytes, const std::string& what) const {
+  const cl::Buffer result = buffer(bytes, CL_MEM_READ_ONLY, what);
+  try {
+    if (bytes) queue_.enqueueWriteBuffer(result, CL_TRUE, 0, bytes, data);
+  } catch (const cl::Error& error) {
+    throw opencl_error(error, "uploading " + what);
+  }
+  return result;
+}
+
+}  // namespace mica

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "host/device/opencl.h"
+
+namespace mica {
+
+/// What a device reports of itself.
+struct DeviceInfo {
+  std::string name, vendor, platform, version, driver;
+  bool is_cpu = false;
+  unsigned compute_units = 0;
+  std::size_t global_bytes = 0;      ///< memory in all
+  std::size_t allocation_bytes = 0;  ///< largest single buffer
+  std::size_t local_bytes = 0;       ///< local memory of a work-group
+  std::size_t work_group_size = 0;   ///< largest work-group
+};
+
+/// Every OpenCL device of every platform, in the loader's order; `mica devices` prints their numbers.
+std::vector<DeviceInfo> list_devices();
+
+/// How the sixteen lanes of a wave are mapped to a device; see kernels/wave.h.
+enum class WaveForm { vectors, items };
+
+/// An OpenCL device with its queue and its programs. Programs are built once for each (source, options), kept
+/// for the life of the device, and cached on disk as binaries, keyed by source, options, device and driver.
+class Device {
+ public:
+  /// @param index as printed by `mica devices`. Throws DeviceError when there is none.
+  explicit Device(int index);
+
+  const DeviceInfo& info() const { return info_; }
+  const cl::Context& context() const { return context_; }
+  const cl::CommandQueue& queue() const { return queue_; }
+  WaveForm wave_form() const { return info_.is_cpu ? WaveForm::vectors : WaveForm::items; }
+
+  /// A kernel of kernels/<file>, compiled with `options` ("-DMICA_INTERPOLATION=1"). Throws DeviceError with
+  /// the compiler's log. The wave form is added to the options.
+  cl::Kernel kernel(const std::string& file, const std::string& name, const std::string& options);
+  cl::Kernel kernel(const std::string& file, const std::string& name, const std::string& options,
+                    WaveForm form);
+
+  /// An uninitialised buffer. Throws DeviceError naming `what` when it exceeds the device's limits.
+  cl::Buffer buffer(std::size_t bytes, cl_mem_flags flags, const std::string& what) const;
+
+  /// A read-only buffer with a copy of `data`.
+  template <typename T>
+  cl::Buffer upload(const std::vector<T>& data, const std::string& what) const {
+    return upload_bytes(data.data(), data.size() * sizeof(T), what);
+  }
+
+ private:
+  cl::Buffer upload_bytes(const void* data, std::size_t bytes, const std::string& what) const;
+  cl::Program program(const std::string& file, const std::string& options);
+
+  cl::Device device_;
+  DeviceInfo info_;
+  cl::Context context_;
+  cl::CommandQueue queue_;
+  std::mutex mutex_;
+  std::map<std::string, cl::Program> programs_;
+};
+
+}  // namespace mica

@@ -1,0 +1,38 @@
+#include "host/scene/background.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "host/image/image.h"
+
+namespace mica {
+
+Background::Background(const BackgroundDescription& description) : color_(description.color) {
+  if (description.path.empty()) return;
+  Image image = read_rgb(description.path);
+  width_ = image.width;
+  height_ = image.height;
+  pixels_ = std::move(image.pixels);
+}
+
+Color Background::pixel(int column, int row) const {
+  column = (column + width_) % width_;
+  row = std::clamp(row, 0, height_ - 1);
+  const float* rgb = &pixels_[3 * (static_cast<std::size_t>(row) * static_cast<std::size_t>(width_) +
+                                   static_cast<std::size_t>(column))];
+  return {rgb[0], rgb[1], rgb[2]};
+}
+
+Color Background::radiance(const Eigen::Vector3d& direction) const {
+  if (pixels_.empty()) return color_;
+  constexpr double pi = 3.14159265358979323846;
+  const double longitude = std::atan2(direction.x(), direction.y());
+  const double colatitude = std::atan2(std::hypot(direction.x(), direction.y()), direction.z());
+  const double x = (0.5 + longitude / (2 * pi)) * width_ - 0.5, y = colatitude / pi * height_ - 0.5;
+  const int column = static_cast<int>(std::floor(x)), row = static_cast<int>(std::floor(y));
+  const double right = x - column, below = y - row;
+  return (1 - below) * ((1 - right) * pixel(column, row) + right * pixel(column + 1, row)) +
+         below * ((1 - right) * pixel(column, row + 1) + right * pixel(column + 1, row + 1));
+}
+
+}  // namespace mica

@@ -1,0 +1,91 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace mica {
+
+/// Linear RGB, or any per-channel triple.
+using Color = Eigen::Vector3d;
+
+struct CameraDescription {
+  Eigen::Vector3d position{0, -3, 1};
+  Eigen::Vector3d look_at{0, 0, 0};
+  Eigen::Vector3d up{0, 0, 1};
+  double fov_degrees = 40;  ///< vertical
+};
+
+struct ConductorFresnel {
+  Color eta{0.2, 0.92, 1.1};
+  Color k{3.9, 2.45, 2.1};
+};
+struct DielectricFresnel {
+  double ior = 1.5;
+};
+/// Schlick's approximation with a colour at normal incidence.
+struct ColorFresnel {
+  Color color{1, 1, 1};
+};
+using Fresnel = std::variant<ConductorFresnel, DielectricFresnel, ColorFresnel>;
+
+/// `[material.NAME]`
+struct MaterialDescription {
+  std::string name;
+  std::string surface;            ///< name of a surface
+  Eigen::Vector2d repeat{1, 1};   ///< map periods over the shape's uv
+  std::string ndf = "triangles";  ///< evaluator
+  double roughness = 0.01;        ///< sigma_r on the disk
+  Fresnel specular = ColorFresnel{};
+  Color diffuse{0, 0, 0};  ///< Lambertian albedo
+};
+
+struct PlaneShape {  ///< square of the plane z = height, uv over its sides
+  Eigen::Vector3d center{0, 0, 0};
+  double size = 10;
+};
+struct SphereShape {
+  Eigen::Vector3d center{0, 0, 0};
+  double radius = 1;
+};
+struct ShellShape {  ///< snail shell: a tube along a logarithmic spiral, standing on z = 0
+  Eigen::Vector3d center{0, 0, 0};
+  double size = 1.1;  ///< height of the bounding box
+  double turns = 4.5;
+};
+struct MeshShape {  ///< Wavefront OBJ with uv
+  std::string path;
+};
+/// `[[shape]]`
+struct ShapeDescription {
+  std::variant<PlaneShape, SphereShape, ShellShape, MeshShape> geometry;
+  std::string material;
+};
+
+struct PointLight {
+  Eigen::Vector3d position{0, 0, 4};
+  Color intensity{10, 10, 10};  ///< W/sr
+};
+struct DirectionalLight {
+  Eigen::Vector3d direction{0, 0, -1};  ///< in which the light travels
+  Color irradiance{3, 3, 3};            ///< W/m^2 on a surface that faces it
+};
+/// `[[light]]`
+using LightDescription = std::variant<PointLight, DirectionalLight>;
+
+/// What rays that hit nothing see: a colour, or a lat-long image when `path` is not empty.
+struct BackgroundDescription {
+  Color color{0, 0, 0};
+  std::string path;
+};
+
+struct SceneDescription {
+  CameraDescription camera;
+  std::vector<MaterialDescription> materials;
+  std::vector<ShapeDescription> shapes;
+  std::vector<LightDescription> lights;
+  BackgroundDescription background;
+};
+
+}  // namespace mica

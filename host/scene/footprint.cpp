@@ -1,0 +1,46 @@
+#include "host/scene/footprint.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+namespace mica {
+
+Eigen::Matrix2d uv_differentials(const CameraRay& ray, const Hit& hit) {
+  // Bounds what follows; such a footprint is shortened later.
+  const double least = 1e-9 * ray.direction.norm();
+  double cosine = hit.face_normal.dot(ray.direction);
+  if (std::abs(cosine) < least) cosine = std::copysign(least, cosine);
+
+  Eigen::Matrix<double, 3, 2> dp;  // [Igehy99] Eq. 10 to 12 for a fixed origin
+  dp.col(0) = hit.t * (ray.ddx - hit.face_normal.dot(ray.ddx) / cosine * ray.direction);
+  dp.col(1) = hit.t * (ray.ddy - hit.face_normal.dot(ray.ddy) / cosine * ray.direction);
+
+  Eigen::Matrix<double, 3, 2> dpduv;
+  dpduv << hit.dpdu, hit.dpdv;
+  const Eigen::Matrix2d metric = dpduv.transpose() * dpduv;
+  if (metric.determinant() <= 1e-24 * metric.trace() * metric.trace()) return Eigen::Matrix2d::Zero();
+  return metric.inverse() * (dpduv.transpose() * dp);
+}
+
+Eigen::Matrix2d footprint_covariance(const Eigen::Matrix2d& duv, double sigma_pixels) {
+  constexpr double max_condition = 1e4, min_variance = 1e-14;
+  const Eigen::Matrix2d covariance = sigma_pixels * sigma_pixels * duv * duv.transpose();
+  const double cuu = covariance(0, 0), cuv = covariance(0, 1), cvv = covariance(1, 1);
+  const double major = (cuu + cvv) / 2 + std::hypot((cuu - cvv) / 2, cuv);
+  // By the determinant of duv: that of the covariance loses the minor axis of a long footprint to
+  // cancellation.
+  const double determinant = sigma_pixels * sigma_pixels * duv.determinant();
+  const double minor = major > 0 ? determinant * determinant / major : 0;
+  if (minor >= min_variance && major <= max_condition * minor) return covariance;
+
+  const double bounded_minor = std::max(minor, min_variance);
+  const double bounded_major = std::clamp(major, bounded_minor, max_condition * bounded_minor);
+  Eigen::Vector2d axis = cuu > cvv ? Eigen::Vector2d(major - cvv, cuv) : Eigen::Vector2d(cuv, major - cuu);
+  if (axis.squaredNorm() > 0) axis.normalize();
+  return bounded_minor * Eigen::Matrix2d::Identity() +
+         (bounded_major - bounded_minor) * axis * axis.transpose();
+}
+
+}  // namespace mica

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "host/scene/description.h"
+
+namespace mica {
+
+/// Unpolarised reflectance of a smooth boundary towards a medium of relative index `ior`, seen from outside.
+/// @param cos_i cosine of the angle of incidence, [0, 1]. @return [0, 1].
+double dielectric_reflectance(double cos_i, double ior);
+
+/// Unpolarised reflectance of a conductor of relative complex index eta + i k. @return [0, 1].
+double conductor_reflectance(double cos_i, double eta, double k);
+
+/// Reflectance of each channel.
+Color reflectance(const Fresnel& fresnel, double cos_i);
+
+}  // namespace mica

@@ -1,0 +1,186 @@
+#include "host/scene/geometry.h"
+
+#include <embree3/rtcore.h>
+#include <fmt/format.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <variant>
+
+#include "host/base/error.h"
+#include "host/scene/obj.h"
+#include "host/scene/shell.h"
+
+namespace mica {
+namespace {
+
+struct DeviceRelease {
+  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+};
+struct SceneRelease {
+  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+};
+struct GeometryRelease {
+  void operator()(RTCGeometry geometry) const { rtcReleaseGeometry(geometry); }
+};
+using DeviceHandle = std::unique_ptr<std::remove_pointer_t<RTCDevice>, DeviceRelease>;
+using SceneHandle = std::unique_ptr<std::remove_pointer_t<RTCScene>, SceneRelease>;
+using GeometryHandle = std::unique_ptr<std::remove_pointer_t<RTCGeometry>, GeometryRelease>;
+
+void check(RTCDevice device, const char* action) {
+  const RTCError error = rtcGetDeviceError(device);
+  if (error != RTC_ERROR_NONE)
+    throw Error(ExitCode::device, fmt::format("Embree cannot {}: error {}", action, static_cast<int>(error)));
+}
+
+/// What Embree found is made exact by the shape itself.
+using Shape = std::variant<PlaneShape, SphereShape, TriangleMesh>;
+
+struct MakeShape {
+  Shape operator()(const PlaneShape& plane) const {
+    if (!(plane.center.allFinite() && std::isfinite(plane.size) && plane.size > 0))
+      throw UsageError("plane: center must be finite and size positive");
+    return plane;
+  }
+  Shape operator()(const SphereShape& sphere) const {
+    if (!(sphere.center.allFinite() && std::isfinite(sphere.radius) && sphere.radius > 0))
+      throw UsageError("sphere: center must be finite and radius positive");
+    return sphere;
+  }
+  Shape operator()(const ShellShape& shell) const { return make_shell(shell); }
+  Shape operator()(const MeshShape& mesh) const { return load_obj(mesh.path); }
+};
+
+template <class Element>
+Element* new_buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, std::size_t count) {
+  return static_cast<Element*>(rtcSetNewGeometryBuffer(geometry, type, 0, format, sizeof(Element), count));
+}
+
+struct MakeEmbreeGeometry {
+  RTCDevice device;
+
+  GeometryHandle operator()(const PlaneShape& plane) const {
+    GeometryHandle geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_QUAD));
+    auto* corners = new_buffer<Eigen::Vector3f>(geometry.get(), RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, 4);
+    auto* quad =
+        new_buffer<std::array<unsigned, 4>>(geometry.get(), RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT4, 1);
+    check(device, "allocate a plane");
+    const double half = plane.size / 2;
+    const Eigen::Vector3d offsets[] = {
+        {-half, -half, 0}, {half, -half, 0}, {half, half, 0}, {-half, half, 0}};
+    for (std::size_t i = 0; i < 4; ++i) corners[i] = (plane.center + offsets[i]).cast<float>();
+    *quad = {0, 1, 2, 3};
+    return geometry;
+  }
+
+  GeometryHandle operator()(const SphereShape& sphere) const {
+    GeometryHandle geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_SPHERE_POINT));
+    auto* point =
+        new_buffer<std::array<float, 4>>(geometry.get(), RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, 1);
+    check(device, "allocate a sphere");
+    const Eigen::Vector3f center = sphere.center.cast<float>();
+    *point = {center.x(), center.y(), center.z(), static_cast<float>(sphere.radius)};
+    return geometry;
+  }
+
+  GeometryHandle operator()(const TriangleMesh& mesh) const {
+    GeometryHandle geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
+    auto* positions = new_buffer<Eigen::Vector3f>(geometry.get(), RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3,
+                                                  mesh.positions.size());
+    auto* triangles = new_buffer<std::array<std::uint32_t, 3>>(geometry.get(), RTC_BUFFER_TYPE_INDEX,
+                                                               RTC_FORMAT_UINT3, mesh.triangles.size());
+    check(device, "allocate a mesh");
+    std::copy(mesh.positions.begin(), mesh.positions.end(), positions);
+    std::copy(mesh.triangles.begin(), mesh.triangles.end(), triangles);
+    return geometry;
+  }
+};
+
+void set_ray(RTCRay* to, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double t_far) {
+  to->org_x = static_cast<float>(origin.x());
+  to->org_y = static_cast<float>(origin.y());
+  to->org_z = static_cast<float>(origin.z());
+  to->dir_x = static_cast<float>(direction.x());
+  to->dir_y = static_cast<float>(direction.y());
+  to->dir_z = static_cast<float>(direction.z());
+  to->tnear = 0;
+  to->tfar = static_cast<float>(t_far);
+  to->time = 0;
+  to->mask = ~0u;
+  to->id = 0;
+  to->flags = 0;
+}
+
+struct ExactHit {
+  const Ray& ray;
+  const RTCRayHit& found;
+  Hit operator()(const PlaneShape& plane) const { return hit_plane(plane, ray); }
+  Hit operator()(const SphereShape& sphere) const { return hit_sphere(sphere, ray, found.ray.tfar); }
+  Hit operator()(const TriangleMesh& mesh) const { return hit_triangle(mesh, found.hit.primID, ray); }
+};
+
+}  // namespace
+
+struct Geometry::Implementation {
+  DeviceHandle device;
+  SceneHandle scene;
+  std::vector<Shape> shapes;  ///< by Embree's geomID
+
+  void attach(const Shape& shape) {
+    const GeometryHandle geometry = std::visit(MakeEmbreeGeometry{device.get()}, shape);
+    rtcCommitGeometry(geometry.get());
+    rtcAttachGeometryByID(scene.get(), geometry.get(), static_cast<unsigned>(shapes.size()));
+    check(device.get(), "add a shape");
+  }
+};
+
+Geometry::Geometry(const std::vector<ShapeDescription>& shapes) : implementation_(new Implementation) {
+  Implementation& self = *implementation_;
+  self.device.reset(rtcNewDevice(nullptr));
+  if (!self.device) check(nullptr, "start");
+  self.scene.reset(rtcNewScene(self.device.get()));
+  rtcSetSceneFlags(self.scene.get(), RTC_SCENE_FLAG_ROBUST);
+  for (const ShapeDescription& description : shapes) {
+    Shape shape = std::visit(MakeShape{}, description.geometry);
+    self.attach(shape);
+    self.shapes.push_back(std::move(shape));
+  }
+  // More threads would order the triangles differently, and the order decides which of two equally near ones
+  // is hit.
+  tbb::task_arena(1).execute([&] { rtcJoinCommitScene(self.scene.get()); });
+  check(self.device.get(), "build its hierarchy");
+}
+
+Geometry::~Geometry() = default;
+Geometry::Geometry(Geometry&&) noexcept = default;
+
+std::optional<Hit> Geometry::intersect(const Ray& ray) const {
+  RTCRayHit found;
+  set_ray(&found.ray, ray.origin, ray.direction, std::numeric_limits<float>::infinity());
+  found.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  found.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(implementation_->scene.get(), &context, &found);
+  if (found.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+
+  Hit hit = std::visit(ExactHit{ray, found}, implementation_->shapes[found.hit.geomID]);
+  // Exactly edge-on there is no point to name.
+  if (!hit.position.allFinite() || !hit.face_normal.allFinite()) return std::nullopt;
+  hit.shape = found.hit.geomID;
+  return hit;
+}
+
+bool Geometry::occluded(const Hit& hit, const Eigen::Vector3d& direction, double distance) const {
+  const double side = direction.dot(hit.face_normal) < 0 ? -1 : 1;
+  RTCRay ray;
+  set_ray(&ray, hit.position + side * hit.error * hit.face_normal, direction, distance);
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded1(implementation_->scene.get(), &context, &ray);
+  return ray.tfar < 0;
+}
+
+}  // namespace mica

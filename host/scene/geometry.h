@@ -1,0 +1,32 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "host/scene/description.h"
+#include "host/scene/hit.h"
+
+namespace mica {
+
+/// All shapes of a scene, ready to be hit. Immutable after construction; used from any number of threads.
+class Geometry {
+ public:
+  /// Throws FileError for a mesh that cannot be used, UsageError for a shape without extent.
+  explicit Geometry(const std::vector<ShapeDescription>& shapes);
+  ~Geometry();
+  Geometry(Geometry&&) noexcept;
+
+  /// The first hit at t > 0.
+  std::optional<Hit> intersect(const Ray& ray) const;
+
+  /// Whether anything lies within `distance` of a hit along the unit `direction`, on the side of the surface
+  /// to which that direction points.
+  bool occluded(const Hit& hit, const Eigen::Vector3d& direction, double distance) const;
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace mica

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+#include "host/scene/camera.h"
+#include "host/scene/description.h"
+#include "host/scene/mesh.h"
+
+namespace mica {
+
+/// origin + t * direction; the direction may have any length.
+struct Ray {
+  Eigen::Vector3d origin, direction;
+};
+
+/// Where a ray meets a shape. Derivatives are those of the tangent plane, in world units per unit of uv.
+struct Hit {
+  double t = 0;
+  double error = 0;  ///< distance by which single precision may misplace the surface here, for shadow rays
+  Eigen::Vector3d position;
+  Eigen::Vector3d face_normal;  ///< of the plane in which position, dpdu and dpdv lie; unit
+  Eigen::Vector3d normal;       ///< smooth over the shape; unit
+  Eigen::Vector3d tangent;      ///< smooth over the shape, towards +u; of any length, may be zero
+  Eigen::Vector3d dpdu, dpdv;   ///< zero where uv is degenerate
+  Eigen::Vector2d uv;           ///< of the shape, before the material's repeat
+  std::uint32_t shape = 0;      ///< index into SceneDescription::shapes
+};
+
+// The exact point at which a ray meets a shape that single precision has already found to be the first:
+// texture coordinates are needed to 1e-6 of a map, which a float hit does not give.
+
+Hit hit_plane(const PlaneShape& plane, const Ray& ray);
+
+/// @param t_near the approximate ray parameter, which tells the two intersections apart.
+Hit hit_sphere(const SphereShape& sphere, const Ray& ray, double t_near);
+
+Hit hit_triangle(const TriangleMesh& mesh, std::uint32_t triangle, const Ray& ray);
+
+}  // namespace mica

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace mica {
+
+/// Triangles with one position, unit normal, texture coordinate and tangent a vertex, interpolated linearly.
+struct TriangleMesh {
+  std::vector<Eigen::Vector3f> positions;
+  std::vector<Eigen::Vector3f> normals;
+  std::vector<Eigen::Vector2d> uvs;
+  std::vector<Eigen::Vector3f> tangents;  ///< towards +u; of any length, zero where uv has no direction
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
+/// Position derivatives of one triangle, on which uv is linear; zero where uv is degenerate.
+struct UvGradients {
+  Eigen::Vector3d dpdu, dpdv;
+};
+UvGradients uv_gradients(const TriangleMesh& mesh, std::uint32_t triangle);
+
+/// Sets each vertex's tangent to the mean over its triangles, weighted by their angle at the vertex, so that
+/// the tangent frame and with it the half vector turn smoothly over the mesh.
+void set_tangents(TriangleMesh* mesh);
+
+}  // namespace mica

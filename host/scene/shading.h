@@ -1,0 +1,40 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "host/scene/description.h"
+#include "host/scene/hit.h"
+
+namespace mica {
+
+/// Directions closer to the horizon of a surface than this cosine neither see nor light it.
+constexpr double min_cosine = 1e-6;
+
+/// Orthonormal; z towards the eye, x along +u, y on the side of +v (see Scene).
+struct TangentFrame {
+  Eigen::Vector3d x, y, z;
+  Eigen::Vector3d face_normal;  ///< of the actual surface, towards the eye
+
+  Eigen::Vector2d on_disk(const Eigen::Vector3d& direction) const {
+    return {direction.dot(x), direction.dot(y)};
+  }
+};
+/// @param to_eye unit.
+TangentFrame tangent_frame(const Hit& hit, const Eigen::Vector3d& to_eye);
+
+/// Light that arrives at a point from one light, before any shadow.
+struct Illumination {
+  Eigen::Vector3d direction;  ///< towards the light; unit
+  double distance;            ///< to the light; infinite for directional ones
+  Color irradiance;           ///< on a surface that faces the light
+};
+Illumination illuminate(const LightDescription& light, const Eigen::Vector3d& position);
+
+/// f_r max(i.n, 0) / D, [Yan14] Eq. 1: what a P-NDF's value is multiplied with, besides the irradiance of the
+/// light.
+/// @param to_eye, to_light unit, above the horizon of n; @param masking_alpha Beckmann roughness of Smith's
+/// G.
+Color glint_weight(const Fresnel& fresnel, double masking_alpha, const Eigen::Vector3d& n,
+                   const Eigen::Vector3d& to_eye, const Eigen::Vector3d& to_light);
+
+}  // namespace mica
