@@ -1,0 +1,56 @@
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <optional>
+
+#include "host/app/commands.h"
+#include "host/app/output.h"
+#include "host/engine/estimate.h"
+#include "host/engine/plan.h"
+#include "host/image/image.h"
+#include "host/job/job.h"
+#include "host/report/report.h"
+
+namespace mica::app {
+namespace {
+
+struct Options {
+  std::string job, json;
+  std::vector<std::string> overrides;
+  int device = 0;
+};
+
+/// Nothing when there is no device to ask: the job can be checked all the same.
+std::optional<Estimate> try_estimate(const Job& job, const Plan& plan, int device_index) {
+  if (list_devices().empty()) {
+    spdlog::warn("no OpenCL device found: the time is not estimated");
+    return std::nullopt;
+  }
+  Device device(device_index);
+  return estimate(job, plan, device);
+}
+
+int run(const Options& options) {
+  const Job job = load_job(options.job, options.overrides);
+  const Plan plan = make_plan(job);
+  if (!options.json.empty()) prepare_output(options.json);
+  const std::optional<Estimate> expected = try_estimate(job, plan, options.device);
+  if (!options.json.empty()) write_file_atomically(options.json, plan_json(job, plan, expected));
+  fmt::print("{}", describe(plan));
+  if (expected) fmt::print("estimate: {} queries, {:.1f} s\n", expected->queries, expected->seconds);
+  return 0;
+}
+
+}  // namespace
+
+void add_check(CLI::App& app, Command* chosen) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("check", "Validate a job and print its plan; render nothing");
+  command->add_option("job", options->job, "Job file, TOML")->required();
+  command->add_option("--set", options->overrides, "Override a setting: key.path=value, as often as needed");
+  command->add_option("--device", options->device, "Number of the OpenCL device that the estimate is for");
+  command->add_option("--json", options->json, "Write the plan and the estimate as JSON");
+  command->callback([=] { *chosen = [=] { return run(*options); }; });
+}
+
+}  // namespace mica::app

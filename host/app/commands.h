@@ -1,0 +1,21 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <memory>
+
+namespace mica::app {
+
+/// What a subcommand does once the command line is parsed; returns the exit code, throws mica::Error.
+using Command = std::function<int()>;
+
+/// Each adds its subcommand to `app`. When it is called, `*chosen` is set.
+void add_render(CLI::App& app, Command* chosen);
+void add_check(CLI::App& app, Command* chosen);
+void add_ndf(CLI::App& app, Command* chosen);
+void add_eval(CLI::App& app, Command* chosen);
+void add_map(CLI::App& app, Command* chosen);
+void add_devices(CLI::App& app, Command* chosen);
+void add_selftest(CLI::App& app, Command* chosen);
+
+}  // namespace mica::app

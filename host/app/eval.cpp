@@ -1,0 +1,136 @@
+// mica eval: densities of a table of queries.
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "host/app/commands.h"
+#include "host/app/evaluation.h"
+#include "host/app/json_file.h"
+#include "host/app/map_options.h"
+#include "host/app/output.h"
+#include "host/app/query_table.h"
+#include "host/image/image.h"
+
+namespace mica::app {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+struct EvalOptions {
+  MapOptions map;
+  std::string quantity = "ndf", ndf, queries, output, json;
+  std::optional<double> roughness, tolerance;
+  int device = 0;
+};
+
+struct PhaseTimes {
+  double load = 0, build = 0, evaluate = 0, device = 0;  // seconds
+};
+
+double lap(Clock::time_point* start) {
+  const Clock::time_point now = Clock::now();
+  const double seconds = std::chrono::duration<double>(now - *start).count();
+  *start = now;
+  return seconds;
+}
+
+nlohmann::json summary(const EvalOptions& options, const Surface& surface, const SurfaceReport& report,
+                       const OpenEvaluator& open, std::size_t count, const PhaseTimes& times) {
+  nlohmann::json json;
+  json["command"] = "eval";
+  json["quantity"] = options.quantity;
+  json["map"] = {{"file", options.map.path},   {"width", surface.width()},
+                 {"height", surface.height()}, {"interpolation", options.map.interpolation},
+                 {"notes", report.notes},      {"warnings", report.warnings}};
+  json["evaluator"] = open.evaluator->name();
+  if (options.tolerance) json["tolerance"] = *options.tolerance;
+  json["device"] = open.device ? describe_device(open.device->info()) : nlohmann::json();
+  json["device_bytes"] = open.evaluator->device_bytes();
+  json["seconds"] = {
+      {"load", times.load}, {"build", times.build}, {"evaluate", times.evaluate}, {"device", times.device}};
+  json["queries"] = count;
+  json["queries_per_second"] = times.evaluate > 0 ? static_cast<double>(count) / times.evaluate : 0.0;
+  json["output"] = options.output;
+  return json;
+}
+
+int run(const EvalOptions& options) {
+  check_tolerance(options.ndf, options.tolerance);
+  check_extension(options.output, {".npy"});
+  prepare_output(options.output);
+  if (!options.json.empty()) prepare_output(options.json);
+
+  PhaseTimes times;
+  Clock::time_point start = Clock::now();
+  const QueryTable table(options.queries, options.roughness);
+  SurfaceReport report;
+  const Surface surface = load_map(options.map, &report);
+  table.check(surface.width(), surface.height());
+  times.load = lap(&start);
+  const OpenEvaluator open = open_evaluator(options.ndf, options.tolerance, options.device, surface);
+  times.build = lap(&start);
+  const std::vector<float> densities =
+      evaluate_all(open.evaluator.get(), table.size(), [&](std::size_t row) { return table.query(row); });
+  times.evaluate = lap(&start);
+  times.device = open.evaluator->device_seconds();
+
+  write_file_atomically(options.output, to_npy(densities));
+  spdlog::info("{} queries by {} on {} in {:.3g} s", densities.size(), open.evaluator->name(),
+               open.device ? open.device->info().name : "the host", times.evaluate);
+  if (!options.json.empty())
+    write_json(options.json, summary(options, surface, report, open, densities.size(), times));
+  return 0;
+}
+
+}  // namespace
+
+void add_eval(CLI::App& app, Command* chosen) {
+  auto options = std::make_shared<EvalOptions>();
+  CLI::App* command = app.add_subcommand("eval", "Evaluates a table of queries: the batch engine bare");
+  command->footer(
+      "Queries: rows u v cuu cuv cvv s t [roughness] of a float32 or float64 .npy array of shape (rows, 7 or "
+      "8),\n"
+      "or of a .csv file whose first line names these columns.\n"
+      "  u v          mean of the Gaussian footprint, in map periods: the map is [0,1)^2 and repeats\n"
+      "  cuu cuv cvv  its covariance, in the same units squared; positive definite\n"
+      "  s t          half vector (x, y) on the unit disk, in the map's tangent frame (x along u, y along "
+      "v)\n"
+      "  roughness    standard deviation of the intrinsic roughness on the disk, 1e-5 to 1; replaces "
+      "--roughness\n"
+      "Output: D, the density of normals over the unit disk at (s, t), float32, shape (rows,).\n"
+      "A row that cannot be evaluated is named, and nothing is written.");
+  add_map_options(command, &options->map);
+  command->add_option("--quantity", options->quantity, "What is evaluated; ndf is all there is so far")
+      ->type_name("NAME")
+      ->check(CLI::IsMember(std::vector<std::string>{"ndf"}))
+      ->capture_default_str();
+  command->add_option("--ndf", options->ndf, "Evaluator; reference is the host in double precision")
+      ->required()
+      ->type_name("NAME")
+      ->check(CLI::IsMember(ndf_names()));
+  command
+      ->add_option("--roughness", options->roughness,
+                   "Of all rows, 1e-5 to 1; a Beckmann alpha is sqrt(2) times this")
+      ->type_name("SIGMA");
+  command
+      ->add_option("--tolerance", options->tolerance,
+                   "Relative error allowed; triangles keeps 1e-4, reference takes 1e-12 to 0.1")
+      ->type_name("ERROR");
+  command->add_option("--queries", options->queries, "Table of queries, .npy or .csv")
+      ->required()
+      ->type_name("FILE");
+  command->add_option("-o,--output", options->output, "Densities, .npy")->required()->type_name("FILE");
+  command
+      ->add_option("--json", options->json,
+                   "Writes what was done: map, device, bytes, seconds, queries a second")
+      ->type_name("FILE");
+  command->add_option("--device", options->device, "OpenCL device, by its number in `mica devices`")
+      ->type_name("N")
+      ->capture_default_str();
+  command->callback([options, chosen] { *chosen = [options] { return run(*options); }; });
+}
+
+}  // namespace mica::app

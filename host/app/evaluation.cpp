@@ -1,0 +1,129 @@
+#include "host/app/evaluation.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+
+#include "host/app/interrupt.h"
+#include "host/app/progress.h"
+#include "host/base/error.h"
+#include "host/engine/make_evaluator.h"
+#include "host/reference/oracle.h"
+
+namespace mica::app {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr double kTrianglesTolerance = 1e-4;  // what `triangles` keeps, relative
+constexpr double kMinOracleTolerance = 1e-12, kMaxOracleTolerance = 0.1;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+class KnownDensities : public PendingDensities {
+ public:
+  explicit KnownDensities(std::vector<float> densities) : densities_(std::move(densities)) {}
+  std::vector<float> wait() override { return std::move(densities_); }
+
+ private:
+  std::vector<float> densities_;
+};
+
+/// The oracle behind the interface of the devices' evaluators.
+class ReferenceEvaluator : public Evaluator {
+ public:
+  ReferenceEvaluator(const Surface& surface, double tolerance) : oracle_(surface, tolerance) {
+    build_seconds_ = seconds_since(start_);
+  }
+
+  std::unique_ptr<PendingDensities> start(const std::vector<Query>& queries) override {
+    const std::vector<reference::OracleResult> results = oracle_.evaluate(queries);
+    std::vector<float> densities(results.size());
+    std::transform(results.begin(), results.end(), densities.begin(),
+                   [](const reference::OracleResult& result) { return static_cast<float>(result.density); });
+    return std::make_unique<KnownDensities>(std::move(densities));
+  }
+  std::string name() const override { return "reference"; }
+  std::size_t device_bytes() const override { return 0; }
+  double build_seconds() const override { return build_seconds_; }
+  double device_seconds() const override { return 0; }
+
+ private:
+  Clock::time_point start_ = Clock::now();
+  reference::Oracle oracle_;
+  double build_seconds_ = 0;
+};
+
+}  // namespace
+
+std::vector<std::string> ndf_names() {
+  std::vector<std::string> names = evaluator_names();
+  names.push_back("reference");
+  return names;
+}
+
+void check_tolerance(const std::string& name, std::optional<double> tolerance) {
+  if (!tolerance) return;
+  if (name == "reference") {
+    if (!(*tolerance >= kMinOracleTolerance && *tolerance <= kMaxOracleTolerance))
+      throw UsageError(fmt::format("--tolerance {}: reference takes {} to {}", *tolerance,
+                                   kMinOracleTolerance, kMaxOracleTolerance));
+  } else if (!(*tolerance >= kTrianglesTolerance)) {
+    throw UsageError(
+        fmt::format("--tolerance {}: {} keeps a relative error of {}; for less use --ndf reference",
+                    *tolerance, name, kTrianglesTolerance));
+  }
+}
+
+OpenEvaluator open_evaluator(const std::string& name, std::optional<double> tolerance, int device_index,
+                             const Surface& surface) {
+  check_tolerance(name, tolerance);
+  OpenEvaluator open;
+  if (name == "reference") {
+    open.evaluator = std::make_unique<ReferenceEvaluator>(
+        surface, tolerance.value_or(reference::Oracle::default_tolerance));
+  } else {
+    open.device = std::make_unique<Device>(device_index);
+    open.evaluator = make_evaluator(name, *open.device, surface);
+  }
+  return open;
+}
+
+std::vector<float> evaluate_all(Evaluator* evaluator, std::size_t count,
+                                const std::function<Query(std::size_t)>& query) {
+  constexpr std::size_t max_chunk = 1 << 20;  // queries; also bounds the host's memory
+  std::vector<float> densities;
+  densities.reserve(count);
+  std::vector<Query> queries;
+  Progress progress("queries", false);
+  const Clock::time_point all_start = Clock::now();
+  for (std::size_t chunk = 256; densities.size() < count;) {
+    check_interrupt();
+    const Clock::time_point start = Clock::now();
+    queries.resize(std::min(chunk, count - densities.size()));
+    for (std::size_t n = 0; n < queries.size(); ++n) queries[n] = query(densities.size() + n);
+    const std::vector<float> answers = evaluator->evaluate(queries);
+    densities.insert(densities.end(), answers.begin(), answers.end());
+    const double seconds = seconds_since(start);
+    if (seconds_since(all_start) > 1)
+      progress.update(static_cast<long>(densities.size()), static_cast<long>(count));
+    if (seconds < 0.5) chunk = std::min(2 * chunk, max_chunk);
+    if (seconds > 2) chunk = std::max<std::size_t>(chunk / 2, 1);
+  }
+  check_interrupt();
+  return densities;
+}
+
+void check_extension(const std::string& path, const std::vector<std::string>& extensions) {
+  const std::string extension = std::filesystem::path(path).extension().string();
+  if (std::find(extensions.begin(), extensions.end(), extension) == extensions.end())
+    throw UsageError(
+        fmt::format("{}: expected a file name that ends in {}", path, fmt::join(extensions, " or ")));
+}
+
+}  // namespace mica::app

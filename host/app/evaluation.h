@@ -1,0 +1,43 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host/device/device.h"
+#include "host/engine/evaluator.h"
+#include "host/surface/surface.h"
+
+namespace mica::app {
+
+/// Names that `--ndf` takes: every evaluator, and `reference`.
+std::vector<std::string> ndf_names();
+
+/// An evaluator, and the device that it needs.
+struct OpenEvaluator {
+  std::unique_ptr<Device> device;  ///< null for `reference`, which runs on the host
+  std::unique_ptr<Evaluator> evaluator;
+};
+
+/// @param name one of ndf_names(); `reference` is the oracle in double precision.
+/// @param tolerance relative error asked for, none: the evaluator's own.
+/// @param device_index as `mica devices` prints it.
+/// @param surface has to outlive the evaluator.
+/// Throws DeviceError, and UsageError for a tolerance that the evaluator cannot keep.
+OpenEvaluator open_evaluator(const std::string& name, std::optional<double> tolerance, int device_index,
+                             const Surface& surface);
+
+/// Throws UsageError when evaluator `name` cannot keep a relative error of `tolerance`.
+void check_tolerance(const std::string& name, std::optional<double> tolerance);
+
+/// Densities of queries 0 .. count - 1. Works in chunks of about a second each, between which it checks
+/// for interrupts; shows progress on stderr once it has taken a second.
+std::vector<float> evaluate_all(Evaluator* evaluator, std::size_t count,
+                                const std::function<Query(std::size_t)>& query);
+
+/// Throws UsageError unless `path` ends in one of `extensions`.
+void check_extension(const std::string& path, const std::vector<std::string>& extensions);
+
+}  // namespace mica::app

@@ -1,0 +1,26 @@
+#include "host/app/interrupt.h"
+
+#include <csignal>
+
+namespace mica::app {
+namespace {
+
+volatile std::sig_atomic_t received = 0;  // a signal handler can reach nothing else
+
+void remember(int signal) {
+  received = signal;
+  std::signal(signal, SIG_DFL);
+}
+
+}  // namespace
+
+void catch_interrupts() {
+  std::signal(SIGINT, remember);
+  std::signal(SIGTERM, remember);
+}
+
+void check_interrupt() {
+  if (received) throw Interrupted(received);
+}
+
+}  // namespace mica::app

@@ -1,0 +1,21 @@
+#pragma once
+
+namespace mica::app {
+
+/// Thrown by `check_interrupt` after SIGINT or SIGTERM; unwinding removes temporary files.
+class Interrupted {
+ public:
+  explicit Interrupted(int signal) : signal_(signal) {}
+  int signal() const { return signal_; }
+
+ private:
+  int signal_;
+};
+
+/// From now on SIGINT and SIGTERM are remembered. A second one ends the process at once.
+void catch_interrupts();
+
+/// Throws Interrupted when one has come. Long work calls it between batches.
+void check_interrupt();
+
+}  // namespace mica::app

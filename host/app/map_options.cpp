@@ -1,0 +1,88 @@
+#include "host/app/map_options.h"
+
+#include <spdlog/spdlog.h>
+
+#include <map>
+
+namespace mica::app {
+namespace {
+
+const std::map<std::string, Encoding> kEncodings = {{"unorm", Encoding::unorm},
+                                                    {"signed", Encoding::signed_float},
+                                                    {"height", Encoding::height},
+                                                    {"slope", Encoding::slope}};
+const std::map<std::string, GreenDirection> kGreens = {{"up", GreenDirection::up},
+                                                       {"down", GreenDirection::down}};
+const std::map<std::string, Interpolation> kInterpolations = {{"nearest", Interpolation::nearest},
+                                                              {"bilinear", Interpolation::bilinear},
+                                                              {"bicubic", Interpolation::bicubic}};
+const std::map<std::string, TexelRepair> kRepairs = {{"repair", TexelRepair::repair},
+                                                     {"refuse", TexelRepair::refuse}};
+
+template <typename T>
+CLI::Validator one_of(const std::map<std::string, T>& values) {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : values) names.push_back(name);
+  return CLI::IsMember(names);
+}
+
+}  // namespace
+
+void add_map_options(CLI::App* command, MapOptions* options) {
+  command->add_option("--map", options->path, "Normal map: an EXR, PNG or TIFF file")
+      ->required()
+      ->type_name("FILE");
+  command
+      ->add_option("--encoding", options->encoding,
+                   "What its pixels are: unorm (n = 2c - 1), signed (n = c), height or slope; "
+                   "default: unorm for integer pixels, signed for float pixels")
+      ->type_name("NAME")
+      ->check(one_of(kEncodings));
+  command->add_option("--green", options->green, "Where a positive green channel leans: up or down the image")
+      ->type_name("NAME")
+      ->check(one_of(kGreens))
+      ->capture_default_str();
+  command
+      ->add_option("--interpolation", options->interpolation,
+                   "Of the normals between texels: nearest, bilinear or bicubic (Catmull-Rom)")
+      ->type_name("NAME")
+      ->check(one_of(kInterpolations))
+      ->capture_default_str();
+  command
+      ->add_option(
+          "--invalid", options->invalid,
+          "Texels that are NaN, infinite or of zero length: refuse the map, or repair them from their "
+          "neighbours")
+      ->type_name("NAME")
+      ->check(one_of(kRepairs))
+      ->capture_default_str();
+  command
+      ->add_option("--height-scale", options->height_scale,
+                   "For encoding height: texels of height per unit of the image's value")
+      ->type_name("TEXELS")
+      ->capture_default_str();
+}
+
+Surface load_map(const MapOptions& options, SurfaceReport* report) {
+  MapFile file;
+  file.path = options.path;
+  file.encoding_given = !options.encoding.empty();
+  if (file.encoding_given) file.encoding = kEncodings.at(options.encoding);
+  file.green = kGreens.at(options.green);
+  file.invalid = kRepairs.at(options.invalid);
+  file.height_scale = options.height_scale;
+  SurfaceDescription description;
+  description.name = "map";
+  description.source = file;
+  description.interpolation = kInterpolations.at(options.interpolation);
+  Surface surface = make_surface(description, report);
+  log_report(*report);
+  return surface;
+}
+
+void log_report(const SurfaceReport& report) {
+  for (const std::string& note : report.notes) spdlog::info(note);
+  for (const std::string& warning : report.warnings) spdlog::warn(warning);
+}
+
+}  // namespace mica::app

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "host/surface/surface.h"
+
+namespace mica::app {
+
+/// Options that say which normal map and how to read it.
+struct MapOptions {
+  std::string path, encoding, green = "up", interpolation = "bilinear", invalid = "refuse";
+  double height_scale = 1;
+};
+
+void add_map_options(CLI::App* command, MapOptions* options);
+
+/// Loads the map; logs what was assumed and what cost accuracy. Throws what `make_surface` throws.
+Surface load_map(const MapOptions& options, SurfaceReport* report);
+
+/// Logs notes and warnings.
+void log_report(const SurfaceReport& report);
+
+}  // namespace mica::app

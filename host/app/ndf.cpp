@@ -1,0 +1,196 @@
+// mica ndf: one footprint's P-NDF as an image.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <numeric>
+
+#include "host/app/commands.h"
+#include "host/app/evaluation.h"
+#include "host/app/map_options.h"
+#include "host/app/output.h"
+#include "host/base/error.h"
+#include "host/base/version.h"
+#include "host/engine/map_query.h"
+#include "host/image/image.h"
+
+namespace mica::app {
+namespace {
+
+struct NdfOptions {
+  MapOptions map;
+  std::string ndf, output;
+  std::vector<double> center_uv, sigma, window = {0, 0, 1};
+  double roughness = 0;
+  int size = 512, device = 0;
+};
+
+/// The footprint with standard deviations `sigma` = (a) or (a, b, degrees from +u to the axis of a), texels.
+Footprint footprint(const NdfOptions& options, const Surface& surface) {
+  const double major = options.sigma[0], minor = options.sigma.size() == 3 ? options.sigma[1] : major;
+  const double angle = options.sigma.size() == 3 ? options.sigma[2] * M_PI / 180 : 0;
+  const Eigen::Vector2d texel_uv(1.0 / surface.width(), 1.0 / surface.height());
+  const Eigen::Vector2d a = major * Eigen::Vector2d(std::cos(angle), std::sin(angle)).cwiseProduct(texel_uv);
+  const Eigen::Vector2d b = minor * Eigen::Vector2d(-std::sin(angle), std::cos(angle)).cwiseProduct(texel_uv);
+  Footprint result;
+  result.mean_uv = {options.center_uv[0], options.center_uv[1]};
+  result.cov_uv = a * a.transpose() + b * b.transpose();
+  return result;
+}
+
+/// Half vectors at the centres of an image's pixels, t up.
+class DiskWindow {
+ public:
+  DiskWindow(const std::vector<double>& window, int size)
+      : center_(window[0], window[1]), radius_(window[2]), size_(size) {}
+
+  Eigen::Vector2d half_vector(std::size_t pixel) const {
+    const auto at = [&](std::size_t index) { return (2 * static_cast<double>(index) + 1) / size_ - 1; };
+    const auto size = static_cast<std::size_t>(size_);
+    return center_ + radius_ * Eigen::Vector2d(at(pixel % size), -at(pixel / size));
+  }
+
+  /// Pixels inside the unit disk.
+  std::vector<std::size_t> pixels() const {
+    std::vector<std::size_t> inside;
+    for (std::size_t pixel = 0; pixel < static_cast<std::size_t>(size_) * size_; ++pixel)
+      if (half_vector(pixel).squaredNorm() < 1) inside.push_back(pixel);
+    return inside;
+  }
+
+  double pixel_area() const { return 4 * radius_ * radius_ / (static_cast<double>(size_) * size_); }
+
+ private:
+  Eigen::Vector2d center_;
+  double radius_;
+  int size_;
+};
+
+/// Brings the 99.5th percentile of what is positive to 0.8, where the PNG's highlights begin to roll off.
+double preview_exposure(std::vector<float> values) {
+  constexpr double percentile = 0.995, brightness = 0.8;
+  values.erase(std::remove_if(values.begin(), values.end(), [](float value) { return !(value > 0); }),
+               values.end());
+  if (values.empty()) return 0;
+  const auto nth = values.begin() + static_cast<long>(percentile * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), nth, values.end());
+  return std::log2(brightness / *nth);
+}
+
+void check(const NdfOptions& options) {
+  check_extension(options.output, {".exr", ".png"});
+  prepare_output(options.output);
+  if (options.sigma.size() == 2) throw UsageError("--sigma: expected TEXELS or TEXELS,TEXELS,DEGREES");
+  for (const double value : options.sigma)
+    if (!std::isfinite(value)) throw UsageError("--sigma: expected finite numbers");
+  for (const double value : options.window)
+    if (!std::isfinite(value)) throw UsageError("--window: expected finite numbers");
+  if (!(options.window[2] > 0)) throw UsageError("--window: expected a positive radius");
+}
+
+Image evaluate(const NdfOptions& options, const Surface& surface) {
+  const DiskWindow window(options.window, options.size);
+  const std::vector<std::size_t> pixels = window.pixels();
+  Query query;
+  query.footprint = footprint(options, surface);
+  query.roughness = options.roughness;
+  const std::string problem = query_problem(query, surface.width(), surface.height());
+  if (!problem.empty()) throw UsageError(problem);
+
+  const OpenEvaluator open = open_evaluator(options.ndf, {}, options.device, surface);
+  const std::vector<float> densities = evaluate_all(open.evaluator.get(), pixels.size(), [&](std::size_t n) {
+    query.half_vector = window.half_vector(pixels[n]);
+    return query;
+  });
+
+  Image image;
+  image.width = image.height = options.size;
+  image.channels = {"ndf.Y"};
+  image.pixels.resize(static_cast<std::size_t>(options.size) * options.size);
+  for (std::size_t n = 0; n < pixels.size(); ++n) image.pixels[pixels[n]] = densities[n];
+  const double share = std::accumulate(densities.begin(), densities.end(), 0.0) * window.pixel_area();
+  spdlog::info("the pixels hold {:.4g} of the normals (the sum of D over them, times a pixel's area)", share);
+  image.metadata = {{"mica:version", version()},
+                    {"mica:map", options.map.path},
+                    {"mica:interpolation", options.map.interpolation},
+                    {"mica:evaluator", open.evaluator->name()},
+                    {"mica:device", open.device ? open.device->info().name : "host"},
+                    {"mica:center_uv", fmt::format("{}", fmt::join(options.center_uv, ","))},
+                    {"mica:sigma_texels", fmt::format("{}", fmt::join(options.sigma, ","))},
+                    {"mica:roughness", fmt::format("{}", options.roughness)},
+                    {"mica:window", fmt::format("{}", fmt::join(options.window, ","))},
+                    {"mica:share_of_normals", fmt::format("{}", share)}};
+  return image;
+}
+
+int run(const NdfOptions& options) {
+  check(options);
+  SurfaceReport report;
+  const Surface surface = load_map(options.map, &report);
+  const Image image = evaluate(options, surface);
+  if (std::filesystem::path(options.output).extension() == ".exr") {
+    write_exr(options.output, image);
+  } else {
+    const double exposure = preview_exposure(image.pixels);
+    write_png(options.output, image, exposure);
+    spdlog::info("preview: D = {:.4g} is shown at 80% of the brightest", 0.8 / std::exp2(exposure));
+  }
+  return 0;
+}
+
+/// Numbers joined by commas in one argument.
+CLI::Option* add_numbers(CLI::App* command, const std::string& name, std::vector<double>* numbers, int min,
+                         int max, const std::string& description, const std::string& type) {
+  return command->add_option(name, *numbers, description)
+      ->delimiter(',')
+      ->expected(min, max)
+      ->type_name(type);
+}
+
+}  // namespace
+
+void add_ndf(CLI::App& app, Command* chosen) {
+  auto options = std::make_shared<NdfOptions>();
+  CLI::App* command = app.add_subcommand("ndf", "One footprint's distribution of normals as an image");
+  command->footer(
+      "The image shows D(s, t), the density of normals over the unit disk: s to the right, t up, 0 outside "
+      "the disk.\n"
+      "EXR holds D itself in channel ndf.Y. PNG is a preview: the 99.5th percentile of the positive values "
+      "is shown\n"
+      "at 80%, brighter ones roll off.");
+  add_map_options(command, &options->map);
+  add_numbers(command, "--center", &options->center_uv, 2, 2,
+              "Mean of the Gaussian footprint, in map periods: the map is [0,1)^2", "U,V")
+      ->required();
+  add_numbers(command, "--sigma", &options->sigma, 1, 3,
+              "Standard deviation of the footprint; or of both axes, and the angle from u to the first",
+              "TEXELS[,TEXELS,DEGREES]")
+      ->required();
+  command
+      ->add_option("--roughness", options->roughness,
+                   "Standard deviation of the intrinsic roughness on the disk, 1e-5 to 1")
+      ->required()
+      ->type_name("SIGMA");
+  command->add_option("--ndf", options->ndf, "Evaluator; reference is the host in double precision")
+      ->required()
+      ->type_name("NAME")
+      ->check(CLI::IsMember(ndf_names()));
+  command->add_option("--size", options->size, "Pixels a side, 1 to 8192")
+      ->type_name("N")
+      ->check(CLI::Range(1, 8192))
+      ->capture_default_str();
+  add_numbers(command, "--window", &options->window, 3, 3,
+              "Part of the disk that is shown: its centre and half its side", "S,T,RADIUS");
+  command->add_option("-o,--output", options->output, "The image, .exr or .png")
+      ->required()
+      ->type_name("FILE");
+  command->add_option("--device", options->device, "OpenCL device, by its number in `mica devices`")
+      ->type_name("N")
+      ->capture_default_str();
+  command->callback([options, chosen] { *chosen = [options] { return run(*options); }; });
+}
+
+}  // namespace mica::app

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "host/app/table.h"
+#include "host/base/query.h"
+
+namespace mica::app {
+
+/// Queries of a file: rows u v cuu cuv cvv s t [roughness], uv in map periods, covariance in uv^2 units, half
+/// vector on the unit disk.
+class QueryTable {
+ public:
+  /// Reads a .npy or .csv file.
+  /// @param roughness of all rows, unless the file has that column.
+  /// Throws FileError (unreadable, damaged) or UsageError (other columns, or no roughness at all).
+  QueryTable(const std::string& path, std::optional<double> roughness);
+
+  std::size_t size() const { return table_.rows; }
+  Query query(std::size_t row) const;
+
+  /// Throws UsageError naming the first ten rows that cannot be evaluated on a map of that many texels, and
+  /// why, and how many there are.
+  void check(int map_width, int map_height) const;
+
+ private:
+  std::string path_;
+  Table table_;
+  double roughness_ = 0;  // where the table has no such column
+};
+
+}  // namespace mica::app

@@ -1,0 +1,146 @@
+// mica selftest: is this device's arithmetic what the kernels count on, and do they keep what they promise on
+// it?
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "host/app/commands.h"
+#include "host/app/device_checks.h"
+#include "host/app/interrupt.h"
+#include "host/app/json_file.h"
+#include "host/app/output.h"
+#include "host/engine/accuracy.h"
+#include "host/engine/make_evaluator.h"
+
+namespace mica::app {
+namespace {
+
+constexpr int kResolution = 256;
+
+struct TestSurface {
+  std::string name;
+  Surface surface;
+};
+
+Surface synthesised(std::variant<MapFile, SpectrumSurface, FlakesSurface> source,
+                    Interpolation interpolation) {
+  return make_surface({"selftest", std::move(source), interpolation}, nullptr);
+}
+
+/// s rises by `rise` across the map, t is constant.
+Surface ramp(double rise) {
+  std::vector<Eigen::Vector2d> normals;
+  for (int n = 0; n < kResolution * kResolution; ++n)
+    normals.emplace_back(rise * ((n % kResolution + 0.5) / kResolution - 0.5), 0.1);
+  return Surface(kResolution, kResolution, Interpolation::bilinear, std::move(normals));
+}
+
+std::vector<TestSurface> test_surfaces() {
+  SpectrumSurface spectrum;
+  spectrum.resolution = kResolution;
+  FlakesSurface flakes;
+  flakes.resolution = kResolution;
+  return {{"spectrum, bilinear", synthesised(spectrum, Interpolation::bilinear)},
+          {"spectrum, bicubic", synthesised(spectrum, Interpolation::bicubic)},
+          {"flakes, nearest", synthesised(flakes, Interpolation::nearest)},
+          {"flakes, bilinear", synthesised(flakes, Interpolation::bilinear)},
+          {"flat", ramp(0)},
+          {"ramp", ramp(0.8)}};
+}
+
+/// Footprints from 0.2 to 12 texels, round and thin, eight half vectors each.
+std::vector<std::vector<Query>> probes(const Surface& surface, double roughness) {
+  constexpr int sizes = 6;
+  std::vector<std::vector<Query>> all;
+  for (int size = 0; size < sizes; ++size) {
+    const double major_texels = 0.2 * std::pow(60, size / (sizes - 1.0));
+    for (const double aspect : {1.0, 10.0}) {
+      const Eigen::Vector2d mean_uv(0.13 + 0.37 * size, 0.71 + 0.11 * aspect);
+      const Footprint footprint =
+          make_footprint(surface, mean_uv, major_texels, major_texels / aspect, 0.4 * size);
+      all.push_back(probe(surface, footprint, roughness, 8, static_cast<std::uint64_t>(size)));
+    }
+  }
+  return all;
+}
+
+std::vector<Check> check_evaluator(const std::string& name, Device* device) {
+  std::vector<Check> checks;
+  for (const TestSurface& test : test_surfaces()) {
+    const std::unique_ptr<Evaluator> evaluator = make_evaluator(name, *device, test.surface);
+    const reference::Oracle oracle(test.surface, 1e-7);
+    for (const double roughness : {1e-4, 1e-3, 1e-2, 0.1}) {
+      check_interrupt();
+      const Accuracy accuracy =
+          compare(evaluator.get(), oracle, test.surface, probes(test.surface, roughness));
+      checks.push_back({fmt::format("{}: {}, roughness {}", name, test.name, roughness), accuracy.queries,
+                        accuracy.worst});
+    }
+  }
+  return checks;
+}
+
+std::string verdict(const Check& check) {
+  if (!check.skipped.empty()) return "not available";
+  return check.passed() ? "PASS" : "FAIL";
+}
+
+nlohmann::json to_json(const std::vector<Check>& checks) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const Check& check : checks) {
+    nlohmann::json entry = {{"name", check.name}, {"points", check.points}, {"verdict", verdict(check)}};
+    entry["worst"] = std::isfinite(check.worst) ? nlohmann::json(check.worst) : nlohmann::json();
+    if (!check.skipped.empty()) entry["reason"] = check.skipped;
+    list.push_back(entry);
+  }
+  return list;
+}
+
+int run(int device_index, const std::string& json_path) {
+  if (!json_path.empty()) prepare_output(json_path);
+  Device device(device_index);
+  fmt::print("device {}: {}, {}\n\n", device_index, device.info().name, device.info().version);
+  fmt::print("{:<48} {:>8} {:>14}\n", "check", "points", "error/allowed");
+  std::vector<Check> checks;
+  const auto take = [&checks](const std::vector<Check>& more) {
+    for (const Check& check : more)
+      fmt::print("{:<48} {:>8} {:>14.3f} {}\n", check.name, check.points, check.worst, verdict(check));
+    checks.insert(checks.end(), more.begin(), more.end());
+  };
+  take({check_struct_layout(&device)});
+  take(check_special_functions(&device));
+  for (const std::string& name : evaluator_names()) take(check_evaluator(name, &device));
+
+  const bool failed =
+      std::any_of(checks.begin(), checks.end(), [](const Check& check) { return check.failed(); });
+  fmt::print("\n{}\n", failed ? "FAIL: do not trust this device with this driver" : "PASS");
+  if (!json_path.empty())
+    write_json(json_path, {{"command", "selftest"},
+                           {"device", describe_device(device.info())},
+                           {"checks", to_json(checks)},
+                           {"pass", !failed}});
+  return static_cast<int>(failed ? ExitCode::device : ExitCode::done);
+}
+
+}  // namespace
+
+void add_selftest(CLI::App& app, Command* chosen) {
+  auto device_index = std::make_shared<int>(0);
+  auto json_path = std::make_shared<std::string>();
+  CLI::App* command =
+      app.add_subcommand("selftest", "Checks the accuracy of a device's arithmetic and of every kernel");
+  command->footer(
+      "Errors are in units of what is allowed; above 1 a check fails, and the exit code is 3. Densities are "
+      "compared\n"
+      "with the reference in double precision: allowed are 1e-4 of it (1e-3 at roughness 1e-4) plus 1e-6 of "
+      "the\n"
+      "footprint's peak.");
+  command->add_option("--device", *device_index, "OpenCL device, by its number in `mica devices`")
+      ->type_name("N")
+      ->capture_default_str();
+  command->add_option("--json", *json_path, "Writes the checks as JSON")->type_name("FILE");
+  command->callback([=] { *chosen = [=] { return run(*device_index, *json_path); }; });
+}
+
+}  // namespace mica::app

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "host/base/query.h"
+#include "host/surface/surface.h"
+
+namespace mica {
+
+/// A query of the job, what the device answered, and which surface it was asked of.
+struct AuditSample {
+  std::uint64_t key =
+      0;  ///< a hash of the seed and the query's place in the image: the sample is the lowest keys
+  Query query;
+  float density = 0;
+  int evaluator = 0;
+};
+
+/// A uniform random sample of a job's queries. It depends on the seed and on the queries' places in the image
+/// only, so any split into batches draws the same.
+class AuditSampler {
+ public:
+  AuditSampler(std::uint64_t seed, std::size_t samples) : seed_(seed), samples_(samples) {}
+
+  /// @param pixel row * width + column in the image; @param ordinal of the query within its pixel.
+  void offer(std::uint64_t pixel, std::uint64_t ordinal, const Query& query, float density, int evaluator);
+
+  /// What was kept, by key.
+  std::vector<AuditSample> samples() const;
+
+ private:
+  std::uint64_t seed_;
+  std::size_t samples_;
+  std::vector<AuditSample> heap_;  // largest key first
+};
+
+/// How far densities lie from the oracle's. Errors of single queries are |D - ref| / (ref + peak / 100),
+/// where peak is the largest reference: an evaluator that keeps |D - ref| <= 1e-4 ref + 1e-6 peak stays below
+/// 1e-4.
+struct AuditResult {
+  std::size_t samples = 0;
+  double relative_l2 = 0;  ///< sqrt(sum (D - ref)^2 / sum ref^2)
+  double percentile_99 = 0;
+  double maximum = 0;
+};
+
+/// Re-evaluates the samples in double precision; `surfaces` by AuditSample::evaluator.
+AuditResult audit(const std::vector<AuditSample>& samples, const std::vector<const Surface*>& surfaces);
+
+}  // namespace mica

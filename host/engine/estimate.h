@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstddef>
+
+#include "host/device/device.h"
+#include "host/engine/plan.h"
+#include "host/job/job.h"
+
+namespace mica {
+
+/// What rendering a job will take, found by tracing a few rows and evaluating a few of their queries.
+struct Estimate {
+  std::size_t queries = 0;
+  double seconds = 0;  ///< wall clock, without the audit
+};
+
+/// Builds what the plan names and tries it on a sample. Throws mica::Error.
+Estimate estimate(const Job& job, const Plan& plan, Device& device);
+
+}  // namespace mica

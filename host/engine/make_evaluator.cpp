@@ -1,0 +1,22 @@
+#include "host/engine/make_evaluator.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "host/base/error.h"
+#include "host/engine/triangle_evaluator.h"
+
+namespace mica {
+
+const std::vector<std::string>& evaluator_names() {
+  static const std::vector<std::string> names = {"triangles"};
+  return names;
+}
+
+std::unique_ptr<Evaluator> make_evaluator(const std::string& name, Device& device, const Surface& surface) {
+  if (name == "triangles") return std::make_unique<TriangleEvaluator>(device, surface);
+  throw UsageError(
+      fmt::format("there is no evaluator \"{}\"; available: {}", name, fmt::join(evaluator_names(), ", ")));
+}
+
+}  // namespace mica

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+
+#include "host/base/query.h"
+#include "host/surface/description.h"
+#include "kernels/types.h"
+
+namespace mica {
+
+/// Why a query cannot be evaluated ("covariance is not positive definite"), or empty when it can. Evaluators
+/// on maps take roughness 1e-5 to 1, standard deviations from 1e-3 to 1e6 texels, half vectors in
+/// [-1, 1]^2 and any finite uv. Off the unit disk D is the density of what the roughness pushes off it
+/// ([Yan14] sec. 3, the symbol \perp): over the whole plane it integrates to one.
+std::string query_problem(const Query& query, int map_width, int map_height);
+
+/// Axes of a footprint in texel space.
+struct FootprintAxes {
+  Eigen::Vector2d major, minor;  ///< unit vectors
+  double sigma_major_texels = 0, sigma_minor_texels = 0;
+};
+FootprintAxes footprint_axes(const Footprint& footprint, int map_width, int map_height);
+
+/// The query in the kernels' form. uv is wrapped in double precision, so 1e7 periods away nothing is lost but
+/// what the uv itself cannot hold.
+/// @param cutoff largest sum of both Gaussians' squared distances that counts, see `cutoff_for`.
+device_types::mica_map_query to_map_query(const Query& query, const device_types::mica_map_grid& grid,
+                                          Interpolation interpolation, double cutoff);
+
+/// Cutoff that leaves out less than `relative_error` of the density's peak.
+double cutoff_for(double relative_error);
+
+}  // namespace mica

@@ -1,0 +1,126 @@
+#include "host/engine/plan.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <set>
+
+#include "host/build/map_structure.h"
+#include "host/scene/scene.h"
+#include "host/surface/map_size.h"
+#include "kernels/types.h"
+
+namespace mica {
+namespace {
+
+constexpr std::size_t kQueriesABatch = std::size_t{1} << 17;
+constexpr int kBatchesInFlight = 2;  // one on the device while the next is traced
+
+const char* name_of(Interpolation interpolation) {
+  switch (interpolation) {
+    case Interpolation::nearest:
+      return "nearest";
+    case Interpolation::bilinear:
+      return "bilinear";
+    case Interpolation::bicubic:
+      return "bicubic";
+  }
+  return "";
+}
+
+PlannedEvaluator plan_evaluator(const Job& job, int surface_index, const std::string& evaluator) {
+  const SurfaceDescription& surface = job.surfaces[surface_index];
+  const MapSize size = map_size(surface);
+  PlannedEvaluator planned;
+  planned.surface = surface.name;
+  planned.evaluator = evaluator;
+  planned.surface_index = surface_index;
+  planned.width = size.width, planned.height = size.height;
+  planned.interpolation = surface.interpolation;
+  planned.kernel =
+      fmt::format("{}.cl -DMICA_INTERPOLATION={}", evaluator, static_cast<int>(surface.interpolation));
+  planned.host_bytes = sizeof(Eigen::Vector2d) * size.width * size.height;
+  planned.device_bytes = map_structure_bytes(size.width, size.height);
+  return planned;
+}
+
+/// Index of the evaluator that a material needs, planned now if it is the first to need it.
+int evaluator_for(const Job& job, const MaterialDescription& material,
+                  std::vector<PlannedEvaluator>* planned) {
+  const auto surface = std::find_if(job.surfaces.begin(), job.surfaces.end(),
+                                    [&](const SurfaceDescription& s) { return s.name == material.surface; });
+  const int surface_index = static_cast<int>(surface - job.surfaces.begin());
+  const auto found = std::find_if(planned->begin(), planned->end(), [&](const PlannedEvaluator& p) {
+    return p.surface_index == surface_index && p.evaluator == material.ndf;
+  });
+  const int index = static_cast<int>(found - planned->begin());
+  if (found == planned->end()) planned->push_back(plan_evaluator(job, surface_index, material.ndf));
+  (*planned)[index].materials.push_back(material.name);
+  return index;
+}
+
+std::vector<std::string> channels_for(const std::vector<std::string>& aovs) {
+  std::vector<std::string> channels = {"R", "G", "B"};
+  const auto add = [&](const std::string& aov, std::initializer_list<const char*> parts) {
+    if (std::find(aovs.begin(), aovs.end(), aov) == aovs.end()) return;
+    for (const char* part : parts) channels.push_back(aov + "." + part);
+  };
+  add("ndf", {"Y"});
+  add("uv", {"U", "V"});
+  add("footprint", {"CUU", "CUV", "CVV"});
+  add("normal", {"X", "Y", "Z"});
+  add("queries", {"Y"});
+  return channels;
+}
+
+double mebibytes(std::size_t bytes) {
+  return static_cast<double>(bytes) / (1 << 20);
+}
+
+}  // namespace
+
+Plan make_plan(const Job& job) {
+  Plan plan;
+  std::set<std::string> used;
+  for (const ShapeDescription& shape : job.scene.shapes) used.insert(shape.material);
+  for (const MaterialDescription& material : job.scene.materials)
+    plan.evaluator_of_material.push_back(
+        used.count(material.name) ? evaluator_for(job, material, &plan.evaluators) : -1);
+
+  plan.channels = channels_for(job.image.aovs);
+  plan.queries_a_batch = kQueriesABatch;
+  const std::size_t queries_a_row = static_cast<std::size_t>(job.image.width) * job.image.subpixels *
+                                    job.image.subpixels * std::max<std::size_t>(job.scene.lights.size(), 1);
+  plan.rows_a_block =
+      static_cast<int>(std::clamp<std::size_t>(kQueriesABatch / queries_a_row, 1, job.image.height));
+
+  const std::size_t block = plan.rows_a_block * queries_a_row;
+  for (const PlannedEvaluator& evaluator : plan.evaluators) {
+    plan.host_bytes += evaluator.host_bytes;
+    plan.device_bytes += evaluator.device_bytes;
+  }
+  plan.device_bytes += kBatchesInFlight * block * (sizeof(device_types::mica_map_query) + sizeof(float));
+  plan.host_bytes +=
+      kBatchesInFlight * block *
+      (sizeof(GlintQuery) + sizeof(Query) + sizeof(device_types::mica_map_query) + sizeof(float));
+  plan.host_bytes += sizeof(float) * plan.channels.size() * job.image.width * job.image.height;
+  return plan;
+}
+
+std::string describe(const Plan& plan) {
+  std::string text;
+  for (const PlannedEvaluator& e : plan.evaluators) {
+    text += fmt::format("{} on surface {} ({} x {} texels, {}) for {}: {:.1f} MiB on the device, kernel {}\n",
+                        e.evaluator, e.surface, e.width, e.height, name_of(e.interpolation),
+                        fmt::join(e.materials, ", "), mebibytes(e.device_bytes), e.kernel);
+  }
+  text += fmt::format("channels {}\n", fmt::join(plan.channels, " "));
+  text += fmt::format("blocks of {} rows, batches of at most {} queries\n", plan.rows_a_block,
+                      plan.queries_a_batch);
+  text += fmt::format("memory {:.0f} MiB on the device, {:.0f} MiB on the host\n",
+                      mebibytes(plan.device_bytes), mebibytes(plan.host_bytes));
+  return text;
+}
+
+}  // namespace mica

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "host/job/job.h"
+
+namespace mica {
+
+/// One evaluator on one surface: what is built, uploaded and compiled for it.
+struct PlannedEvaluator {
+  std::string surface;    ///< name in the job
+  std::string evaluator;  ///< e.g. "triangles"
+  int surface_index = 0;  ///< into Job::surfaces
+  int width = 0, height = 0;
+  Interpolation interpolation = Interpolation::bilinear;
+  std::string kernel;          ///< file and options
+  std::size_t host_bytes = 0;  ///< of the surface
+  std::size_t device_bytes = 0;
+  std::vector<std::string> materials;  ///< that use it
+};
+
+/// All that a job needs and nothing else. Surfaces and materials that no shape uses do not appear.
+struct Plan {
+  std::vector<PlannedEvaluator> evaluators;
+  std::vector<int> evaluator_of_material;        ///< by index of SceneDescription::materials; -1: not used
+  std::vector<std::string> channels;             ///< of the image, in order
+  int rows_a_block = 0;                          ///< image rows that are traced and evaluated together
+  std::size_t queries_a_batch = 0;               ///< of one kernel launch, at most
+  std::size_t host_bytes = 0, device_bytes = 0;  ///< estimates of the whole
+};
+
+/// Derives the plan from the job; map files are opened for their size only. Throws FileError.
+Plan make_plan(const Job& job);
+
+/// The plan in words, a line an item.
+std::string describe(const Plan& plan);
+
+}  // namespace mica

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace mica {
+
+/// Named float channels of equal size, rows from the top, and string metadata.
+struct Image {
+  int width = 0, height = 0;
+  std::vector<std::string> channels;            ///< "R", "G", "B", "ndf.Y", ...
+  std::vector<float> pixels;                    ///< interleaved: (row * width + column) * channels + channel
+  std::map<std::string, std::string> metadata;  ///< names as written, e.g. "mica:device"
+};
+
+/// Writes float32 EXR, whole or not at all (temporary file, fsync, rename). The same image gives the same
+/// bytes. Throws FileError.
+void write_exr(const std::string& path, const Image& image);
+
+/// Writes R, G, B (or the only channel as grey) as an 8-bit sRGB PNG after 2^exposure scaling. Throws
+/// FileError.
+///
+/// A preview: values up to 0.8 are shown as they are, what is above rolls off towards 1, so that glints keep
+/// their colour a little longer than a clamp would. NaN is shown black.
+void write_png(const std::string& path, const Image& image, double exposure);
+
+/// Writes bytes to `path`, whole or not at all. Throws FileError.
+void write_file_atomically(const std::string& path, const std::string& bytes);
+
+/// Reads an EXR, HDR, PNG, TIFF or JPEG image as three channels R, G, B of linear light; a single channel
+/// becomes grey, further channels are left out. 8- and 16-bit images are taken as sRGB. Throws FileError when
+/// it cannot be read, is damaged, claims more pixels than its bytes can hold, or has NaN or infinite pixels.
+Image read_rgb(const std::string& path);
+
+}  // namespace mica

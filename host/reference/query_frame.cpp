@@ -1,0 +1,80 @@
+#include "host/reference/query_frame.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "host/base/error.h"
+
+namespace mica::reference {
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+/// a c - b^2 without cancellation: elongated footprints have determinants far smaller than either product.
+double determinant(double a, double b, double c) {
+  const double b_squared = b * b;
+  return std::fma(a, c, -b_squared) + std::fma(-b, b, b_squared);
+}
+
+void require(bool holds, const char* what) {
+  if (!holds) throw UsageError(what);
+}
+
+/// The sum of G_p over all periods is (1 + ripple) / (W H), where the ripple is the sum of exp(-2 pi^2 k^T C
+/// k) over the integer vectors k != 0 (Poisson summation, C in uv). At most 8 exp(-2 pi^2 e) where C's
+/// smaller eigenvalue e > 0.1.
+bool ripple_below(double bound, double cuu, double det, double cvv) {
+  const double half_trace = 0.5 * (cuu + cvv);
+  const double larger = half_trace + std::sqrt(std::max(0.0, half_trace * half_trace - det));
+  const double smaller = det / larger;
+  return smaller > 0.1 && 8 * std::exp(-2 * pi * pi * smaller) <= bound;
+}
+
+}  // namespace
+
+QueryFrame::QueryFrame(const Surface& surface, const Query& query, double negligible) {
+  const Eigen::Matrix2d& cov = query.footprint.cov_uv;
+  require(query.footprint.mean_uv.allFinite(), "the footprint's mean is not finite");
+  require(cov.allFinite() && cov(0, 1) == cov(1, 0),
+          "the footprint's covariance is not finite and symmetric");
+  require(query.half_vector.allFinite(), "the half vector is not finite");
+  require(std::isfinite(query.roughness) && query.roughness > 0, "the roughness is not positive and finite");
+  const double det = determinant(cov(0, 0), cov(0, 1), cov(1, 1));
+  require(cov(0, 0) > 0 && det > 0, "the footprint's covariance is not positive definite");
+
+  const double width = surface.width(), height = surface.height();
+  const Eigen::Vector2d& mean = query.footprint.mean_uv;
+  mean_texels_ = {(mean.x() - std::floor(mean.x())) * width, (mean.y() - std::floor(mean.y())) * height};
+  cov_texels_ << cov(0, 0) * width * width, cov(0, 1) * width * height, cov(0, 1) * width * height,
+      cov(1, 1) * height * height;
+  half_vector_ = query.half_vector;
+  inverse_roughness_ = 1 / query.roughness;
+  covers_evenly_ = ripple_below(negligible, cov(0, 0), det, cov(1, 1));
+
+  const double sigma_x = std::sqrt(cov(0, 0)) * width;
+  const double sigma_y = std::sqrt(det / cov(0, 0)) * height;
+  inverse_x_ = covers_evenly_ ? 0 : 1 / sigma_x;
+  inverse_y_ = covers_evenly_ ? 0 : 1 / sigma_y;
+  shear_ = cov(0, 1) / std::sqrt(cov(0, 0)) * height;
+  const double footprint_area = covers_evenly_ ? width * height : 2 * pi * sigma_x * sigma_y;
+  effective_area_ = covers_evenly_ ? footprint_area : footprint_area + 1;
+  scale_ = 1 / (footprint_area * 2 * pi * query.roughness * query.roughness);
+
+  constexpr double epsilon = std::numeric_limits<double>::epsilon();
+  const double finest = std::min(sigma_x, sigma_y) / std::max(width, height);
+  rounding_ = 8 * epsilon * (1 / query.roughness + 1 / finest);
+  // Beyond, coordinates in double say nothing about D; far beyond, they overflow.
+  require(rounding_ < 1e-3 && sigma_x < 1e9 && sigma_y < 1e9,
+          "too small or too large a footprint or roughness");
+}
+
+Eigen::Vector2d QueryFrame::whiten_position(const Eigen::Vector2d& position_texels) const {
+  const Eigen::Vector2d offset = position_texels - mean_texels_;
+  const double x = offset.x() * inverse_x_;
+  return {x, (offset.y() - shear_ * x) * inverse_y_};
+}
+
+}  // namespace mica::reference

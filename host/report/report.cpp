@@ -1,0 +1,103 @@
+#include "host/report/report.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "host/base/version.h"
+
+namespace mica {
+namespace {
+
+using nlohmann::ordered_json;
+
+double mebibytes(std::size_t bytes) {
+  return static_cast<double>(bytes) / (1 << 20);
+}
+
+double rate(std::size_t queries, double seconds) {
+  return seconds > 0 ? static_cast<double>(queries) / seconds : 0;
+}
+
+ordered_json to_json(const Plan& plan) {
+  ordered_json evaluators = ordered_json::array();
+  for (const PlannedEvaluator& e : plan.evaluators) {
+    evaluators.push_back({{"surface", e.surface},
+                          {"evaluator", e.evaluator},
+                          {"width", e.width},
+                          {"height", e.height},
+                          {"kernel", e.kernel},
+                          {"materials", e.materials},
+                          {"host_bytes", e.host_bytes},
+                          {"device_bytes", e.device_bytes}});
+  }
+  return {{"evaluators", evaluators},          {"channels", plan.channels},
+          {"rows_a_block", plan.rows_a_block}, {"queries_a_batch", plan.queries_a_batch},
+          {"host_bytes", plan.host_bytes},     {"device_bytes", plan.device_bytes}};
+}
+
+ordered_json to_json(const Job& job) {
+  return {{"path", job.path}, {"hash", fmt::format("{:016x}", job.hash)}, {"seed", job.seed}};
+}
+
+ordered_json to_json(const DeviceInfo& device) {
+  return {{"name", device.name},
+          {"platform", device.platform},
+          {"version", device.version},
+          {"driver", device.driver},
+          {"compute_units", device.compute_units}};
+}
+
+}  // namespace
+
+std::string plan_json(const Job& job, const Plan& plan, const std::optional<Estimate>& estimate) {
+  ordered_json json = {{"mica", version()}, {"job", to_json(job)}, {"plan", to_json(plan)}};
+  if (estimate) json["estimate"] = {{"queries", estimate->queries}, {"seconds", estimate->seconds}};
+  return json.dump(2) + "\n";
+}
+
+std::string render_json(const Job& job, const DeviceInfo& device, const RenderResult& result) {
+  const PhaseSeconds& s = result.seconds;
+  ordered_json json;
+  json["mica"] = version();
+  json["job"] = to_json(job);
+  json["device"] = to_json(device);
+  json["plan"] = to_json(result.plan);
+  json["device_bytes"] = result.device_bytes;
+  json["seconds"] = {{"surfaces", s.surfaces}, {"scene", s.scene}, {"build", s.build}, {"render", s.render},
+                     {"trace", s.trace},       {"wait", s.wait},   {"audit", s.audit}, {"total", s.total}};
+  json["queries"] = result.queries;
+  json["device_seconds"] = result.device_seconds;
+  json["queries_per_second"] = rate(result.queries, s.render);
+  json["device_queries_per_second"] = rate(result.queries, result.device_seconds);
+  json["audit"] = {{"samples", result.audit.samples},
+                   {"relative_l2", result.audit.relative_l2},
+                   {"percentile_99", result.audit.percentile_99},
+                   {"maximum", result.audit.maximum}};
+  json["notes"] = result.surface_notes;
+  json["warnings"] = result.surface_warnings;
+  return json.dump(2) + "\n";
+}
+
+std::string render_summary(const DeviceInfo& device, const RenderResult& result) {
+  const PhaseSeconds& s = result.seconds;
+  std::string text = fmt::format("device    {} ({} compute units)\n", device.name, device.compute_units);
+  text += fmt::format("memory    {:.1f} MiB of structures on the device\n", mebibytes(result.device_bytes));
+  text += fmt::format(
+      "seconds   {:.2f} in all: surfaces {:.2f}, scene {:.2f}, build {:.2f}, render {:.2f} (of it tracing "
+      "{:.2f}, "
+      "waiting for the device {:.2f}), audit {:.2f}\n",
+      s.total, s.surfaces, s.scene, s.build, s.render, s.trace, s.wait, s.audit);
+  text +=
+      fmt::format("queries   {} at {:.3f} million/s ({:.3f} in the kernels alone)\n", result.queries,
+                  1e-6 * rate(result.queries, s.render), 1e-6 * rate(result.queries, result.device_seconds));
+  if (result.audit.samples) {
+    text += fmt::format(
+        "audit     {} queries against the oracle: relative L2 {:.2e}, 99th percentile {:.2e}, "
+        "maximum {:.2e}\n",
+        result.audit.samples, result.audit.relative_l2, result.audit.percentile_99, result.audit.maximum);
+  }
+  return text;
+}
+
+}  // namespace mica
