@@ -1,0 +1,148 @@
+// `triangles` against the paper's own recursion, on the same queries in the same run: 65,536 coherent
+// footprints on a 2048^2 spectrum, roughness 0.005. Prints a table; with an argument, writes it as JSON to
+// that file.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <numeric>
+
+#include "bench/fma_peak.h"
+#include "bench/paper_recursion.h"
+#include "host/base/error.h"
+#include "host/engine/triangle_evaluator.h"
+#include "host/reference/oracle.h"
+
+namespace mica::bench {
+namespace {
+
+constexpr int kSide = 256;  // queries a side of the block of neighbouring footprints
+constexpr int kRepeats = 11;
+
+/// Neighbouring footprints, one standard deviation apart, and a half vector that turns slowly: a highlight's
+/// edge.
+std::vector<Query> coherent_queries(const Surface& surface, double sigma_texels) {
+  std::vector<Query> queries(kSide * kSide);
+  const double sigma_uv = sigma_texels / surface.width();
+  for (int n = 0; n < kSide * kSide; ++n) {
+    const int x = n % kSide, y = n / kSide;
+    queries[n].footprint.mean_uv = {0.3 + x * sigma_uv, 0.4 + y * sigma_uv};
+    queries[n].footprint.cov_uv = Eigen::Matrix2d::Identity() * sigma_uv * sigma_uv;
+    queries[n].half_vector = {0.15 * x / kSide, 0.05 - 0.1 * y / kSide};
+    queries[n].roughness = 0.005;
+  }
+  return queries;
+}
+
+/// Every `stride`-th query: what slow evaluators are timed on.
+std::vector<Query> thinned(const std::vector<Query>& queries, std::size_t stride) {
+  std::vector<Query> some;
+  for (std::size_t n = 0; n < queries.size(); n += stride) some.push_back(queries[n]);
+  return some;
+}
+
+struct Timing {
+  double median_seconds, lowest, highest;
+};
+
+template <typename Work>
+Timing time_repeats(Work work) {
+  work();  // warm-up
+  std::vector<double> seconds;
+  for (int repeat = 0; repeat < kRepeats; ++repeat) {
+    const auto start = std::chrono::steady_clock::now();
+    work();
+    seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  }
+  std::sort(seconds.begin(), seconds.end());
+  return {seconds[seconds.size() / 2], seconds.front(), seconds.back()};
+}
+
+/// sqrt(sum (D - ref)^2 / sum ref^2) over a thinned set.
+double relative_l2(const std::vector<float>& densities,
+                   const std::vector<reference::OracleResult>& references) {
+  double squares = 0, reference_squares = 0;
+  for (std::size_t n = 0; n < references.size(); ++n) {
+    squares += std::pow(densities[n] - references[n].density, 2);
+    reference_squares += std::pow(references[n].density, 2);
+  }
+  return std::sqrt(squares / reference_squares);
+}
+
+int run(const char* json_path) {
+  Device device(0);
+  SurfaceDescription description;
+  description.source = SpectrumSurface{};
+  SurfaceReport report;
+  const Surface surface = make_surface(description, &report);
+  TriangleEvaluator triangles(device, surface);
+  TriangleSettings counting;
+  counting.count_flops = true;
+  TriangleEvaluator counter(device, surface, counting);
+  const PaperRecursion recursion(surface);
+  const reference::Oracle oracle(surface, 1e-7);
+  const double peak = measure_fma_peak(device);
+
+  fmt::print("device {}, {} compute units, multiply-add peak {:.0f} GFLOP/s\n", device.info().name,
+             device.info().compute_units, 1e-9 * peak);
+  fmt::print("structures {:.1f} MiB, built in {:.3f} s\n",
+             static_cast<double>(triangles.device_bytes()) / (1 << 20), triangles.build_seconds());
+  fmt::print("{:>6} {:>14} {:>17} {:>12} {:>8} {:>16} {:>8} {:>10} {:>10}\n", "sigma", "queries/s",
+             "(spread)", "flop/query", "of peak", "recursion q/s", "ratio", "error L2", "paper's L2");
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  for (const double sigma : {2.0, 8.0, 32.0}) {
+    const std::vector<Query> queries = coherent_queries(surface, sigma);
+    const std::vector<Query> batch = thinned(queries, sigma > 16 ? 16 : 1);
+    const std::vector<Query> few = thinned(queries, sigma > 16 ? 1024 : sigma > 4 ? 64 : 16);
+    const Timing ours = time_repeats([&] { triangles.evaluate(batch); });
+    const Timing paper = time_repeats([&] { recursion.evaluate(few); });
+    const std::vector<float> flops = counter.evaluate(batch);
+    const double flops_a_query =
+        std::accumulate(flops.begin(), flops.end(), 0.0) / static_cast<double>(flops.size());
+    const double rate = static_cast<double>(batch.size()) / ours.median_seconds;
+    const double paper_rate = static_cast<double>(few.size()) / paper.median_seconds;
+    const auto references = oracle.evaluate(few);
+    const double error = relative_l2(triangles.evaluate(few), references);
+    const double paper_error = relative_l2(recursion.evaluate(few), references);
+    fmt::print(
+        "{:>6} {:>14.0f} {:>8.0f}-{:<8.0f} {:>12.0f} {:>7.1f}% {:>16.0f} {:>8.1f} {:>10.1e} {:>10.1e}\n",
+        sigma, rate, static_cast<double>(batch.size()) / ours.highest,
+        static_cast<double>(batch.size()) / ours.lowest, flops_a_query, 100 * rate * flops_a_query / peak,
+        paper_rate, rate / paper_rate, error, paper_error);
+    rows.push_back({{"sigma_texels", sigma},
+                    {"queries", batch.size()},
+                    {"queries_per_second", rate},
+                    {"flops_per_query", flops_a_query},
+                    {"share_of_peak", rate * flops_a_query / peak},
+                    {"recursion_queries_per_second", paper_rate},
+                    {"ratio", rate / paper_rate},
+                    {"relative_l2", error},
+                    {"recursion_relative_l2", paper_error}});
+  }
+  if (json_path) {
+    std::ofstream(json_path) << nlohmann::ordered_json({{"device", device.info().name},
+                                                        {"fma_peak_flops", peak},
+                                                        {"build_seconds", triangles.build_seconds()},
+                                                        {"device_bytes", triangles.device_bytes()},
+                                                        {"rows", rows}})
+                                    .dump(2)
+                             << '\n';
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace mica::bench
+
+int main(int argc, char** argv) {
+  try {
+    return mica::bench::run(argc > 1 ? argv[1] : nullptr);
+  } catch (const mica::Error& error) {
+    fmt::print(stderr, "triangles_bench: {}\n", error.what());
+    return static_cast<int>(error.code());
+  }
+}

@@ -1,0 +1,188 @@
+#include "tests/job/job_text.h"
+
+namespace mica::test {
+namespace {
+
+/// One mistake: the first `from` of the least job is replaced by `to`, where `@` marks the place to be named.
+struct Mistake {
+  std::string from, to, message;
+};
+
+class Errors : public testing::TestWithParam<Mistake> {};
+
+TEST_P(Errors, NamePlaceFindingAndExpectation) {
+  std::string text = replaced(least_job, GetParam().from, GetParam().to);
+  const std::size_t mark = text.find('@');
+  ASSERT_NE(mark, std::string::npos);
+  text.erase(mark, 1);
+  const std::string before = text.substr(0, mark);
+  const auto line = 1 + std::count(before.begin(), before.end(), '\n');
+  const auto column = before.size() - (before.rfind('\n') + 1) + 1;  // npos + 1 is 0
+
+  const JobFolder folder;
+  const std::vector<JobIssue> issues = folder.issues(text);
+  ASSERT_EQ(issues.size(), 1u) << (issues.empty() ? "" : JobError(issues).what());
+  EXPECT_EQ(issues[0].message, GetParam().message);
+  EXPECT_EQ(issues[0].line, line);
+  EXPECT_EQ(issues[0].column, int(column));
+  EXPECT_EQ(issues[0].file, folder.path("job.toml"));
+}
+
+const char* const surface_keys = "resolution, rms_slope, correlation, seed";
+
+const std::vector<Mistake> unknown_keys = {
+    {"", "[image]\n  @widht = 3",
+     "image.widht: found an unknown key; expected one of: width, height, subpixels, aovs, exposure "
+     "(did you mean \"width\"?)"},
+    {"", "[audit]\n@turbo = 1", "audit.turbo: found an unknown key; expected \"samples\""},
+    {"", "[@lights]",
+     "lights: found an unknown key; expected one of: seed, image, surface, camera, material, shape, light, "
+     "background, audit (did you mean \"light\"?)"},
+    {"\"spectrum\"", "\"spectrum\"\n@flake_size = 3",
+     std::string("surface.bumps.flake_size: found an unknown key; expected one of: generate, ") +
+         surface_keys + ", interpolation"},
+    {"\"bumps\"", "\"bumps\"\nspecular = { ior = 1.5, @kk = 1 }",
+     "material.gold.specular.kk: found an unknown key; expected \"ior\""},
+    {"\"bumps\"", "\"bumps\"\n@\"a b\" = 1",
+     "material.gold.\"a b\": found an unknown key; expected one of: surface, repeat, ndf, roughness, "
+     "specular, "
+     "diffuse"},
+};
+INSTANTIATE_TEST_SUITE_P(UnknownKey, Errors, testing::ValuesIn(unknown_keys));
+
+const std::vector<Mistake> wrong_types = {
+    {"", "[image]\nwidth = @\"wide\"",
+     "image.width: found \"wide\" (a string); expected an integer in [1, 16384]"},
+    {"", "[image]\nwidth = @4.0", "image.width: found 4 (a float); expected an integer in [1, 16384]"},
+    {"", "[image]\nwidth = @true", "image.width: found true; expected an integer in [1, 16384]"},
+    {"", "[image]\nwidth = @2024-01-01",
+     "image.width: found a date or time; expected an integer in [1, 16384]"},
+    {"", "image = @3", "image: found 3; expected a table"},
+    {"", "@[[image]]", "image: found an array; expected a table"},
+    {"", "[camera]\nfov = @[1]", "camera.fov: found an array; expected a number in (0, 180)"},
+    {"", "[camera]\nposition = @7",
+     "camera.position: found 7; expected an array of 3 numbers in [-1000000, 1000000]"},
+    {"", "[camera]\nposition = @[1, 2]",
+     "camera.position: found an array of 2; expected an array of 3 numbers in [-1000000, 1000000]"},
+    {"", "[camera]\nposition = [1, 2,\n @{}]",
+     "camera.position.2: found a table; expected a number in [-1000000, 1000000]"},
+    {"", "[image]\naovs = @\"uv\"",
+     "image.aovs: found \"uv\" (a string); expected an array with any of: ndf, uv, footprint, normal, "
+     "queries"},
+    {"\"bumps\"", "@[\"bumps\"]",
+     "material.gold.surface: found an array; expected a string that is not empty"},
+    {"\"sphere\"", "@1", "shape.0.type: found 1; expected one of: plane, sphere, shell, mesh"},
+    {"[surface.bumps]", "[surface]\nextra = @1\n[surface.bumps]",
+     "surface.extra: found 1; expected a table, headed [surface.NAME]"},
+    {"[[light]]", "@[light]", "light: found a table; expected an array of tables, each headed [[light]]"},
+    {"", "seed = @\"x\"", "seed: found \"x\" (a string); expected an integer from 0 below 2^63"},
+};
+INSTANTIATE_TEST_SUITE_P(WrongType, Errors, testing::ValuesIn(wrong_types));
+
+const std::vector<Mistake> missing_keys = {
+    {"[surface.bumps]\ngenerate = \"spectrum\"", "@[surface.bumps]",
+     "surface.bumps: found neither of \"file\" and \"generate\"; expected exactly one"},
+    {"[material.gold]\nsurface = \"bumps\"", "@[material.gold]",
+     "material.gold: found no key \"surface\"; expected the name of a surface"},
+    {"[[shape]]\ntype = \"sphere\"", "@[[shape]]",
+     "shape.0: found no key \"type\"; expected one of: plane, sphere, shell, mesh"},
+    {"[[shape]]\ntype = \"sphere\"\nmaterial = \"gold\"", "@[[shape]]\ntype = \"sphere\"",
+     "shape.0: found no key \"material\"; expected the name of a material"},
+    {"[[shape]]\ntype = \"sphere\"", "@[[shape]]\ntype = \"mesh\"",
+     "shape.0: found no key \"file\"; expected a Wavefront OBJ file"},
+    {"[[light]]\ntype = \"point\"", "@[[light]]",
+     "light.0: found no key \"type\"; expected one of: point, directional"},
+    {"[[light]]\ntype = \"point\"\nposition = [0, 0, 4]", "@[[light]]\ntype = \"point\"",
+     "light.0: found no key \"position\"; expected an array of 3 numbers"},
+    {"[[light]]\ntype = \"point\"\nposition = [0, 0, 4]", "@[[light]]\ntype = \"directional\"",
+     "light.0: found no key \"direction\"; expected an array of 3 numbers"},
+    {"\"bumps\"", "\"bumps\"\nspecular = @{ eta = [1, 1, 1] }",
+     "material.gold.specular: found no key \"k\"; expected it beside \"eta\""},
+};
+
+INSTANTIATE_TEST_SUITE_P(MissingKey, Errors, testing::ValuesIn(missing_keys));
+
+const std::vector<Mistake> out_of_range = {
+    {"", "[image]\nwidth = @0", "image.width: found 0; expected an integer in [1, 16384]"},
+    {"", "[image]\nwidth = @99999999999",
+     "image.width: found 99999999999; expected an integer in [1, 16384]"},
+    {"", "[image]\nsubpixels = @17", "image.subpixels: found 17; expected an integer in [1, 16]"},
+    {"", "[image]\nexposure = @99", "image.exposure: found 99; expected a number in [-32, 32]"},
+    {"", "[camera]\nfov = @0", "camera.fov: found 0; expected a number in (0, 180)"},
+    {"", "[camera]\nfov = @180.0", "camera.fov: found 180 (a float); expected a number in (0, 180)"},
+    {"", "[camera]\nfov = @nan", "camera.fov: found nan (a float); expected a number in (0, 180)"},
+    {"", "[camera]\nup = [0, @-inf, 1]",
+     "camera.up.1: found -inf (a float); expected a number in [-1000000, 1000000]"},
+    {"", "[audit]\nsamples = @-1", "audit.samples: found -1; expected an integer in [0, 1000000]"},
+    {"", "seed = @-1", "seed: found -1; expected an integer from 0 below 2^63"},
+    {"\"spectrum\"", "\"spectrum\"\nresolution = @1000",
+     "surface.bumps.resolution: found 1000; expected a power of two"},
+    {"\"spectrum\"", "\"spectrum\"\nresolution = 64\ncorrelation = @65",
+     "surface.bumps.correlation: found 65; expected a number in (0, 64]"},
+    {"\"spectrum\"", "\"flakes\"\nresolution = 100\nflake_size = @26",
+     "surface.bumps.flake_size: found 26; expected a number in [1, 25]"},
+    {"\"bumps\"", "\"bumps\"\nroughness = @0",
+     "material.gold.roughness: found 0; expected a number in [0.0001, 1]"},
+    {"\"bumps\"", "\"bumps\"\nrepeat = [1, @0]",
+     "material.gold.repeat.1: found 0; expected a number in (0, 1000000]"},
+    {"\"bumps\"", "\"bumps\"\ndiffuse = [0, @1.5, 0]",
+     "material.gold.diffuse.1: found 1.5 (a float); expected a number in [0, 1]"},
+    {"\"bumps\"", "\"bumps\"\nspecular = { ior = @0.5 }",
+     "material.gold.specular.ior: found 0.5 (a float); expected a number in [1, 10]"},
+    {"\"sphere\"", "\"sphere\"\nradius = @-1", "shape.0.radius: found -1; expected a number in (0, 1000000]"},
+    {"4]", "4]\nintensity = [1, 1, @-1]",
+     "light.0.intensity.2: found -1; expected a number in [0, 1000000000]"},
+};
+INSTANTIATE_TEST_SUITE_P(OutOfRange, Errors, testing::ValuesIn(out_of_range));
+
+const std::vector<Mistake> wrong_words = {
+    {"\"spectrum\"", "@\"spectrun\"",
+     "surface.bumps.generate: found \"spectrun\" (a string); expected one of: spectrum, flakes (did you mean "
+     "\"spectrum\"?)"},
+    {"\"spectrum\"", "\"spectrum\"\ninterpolation = @\"cubic\"",
+     "surface.bumps.interpolation: found \"cubic\" (a string); expected one of: nearest, bilinear, bicubic "
+     "(did "
+     "you mean \"bicubic\"?)"},
+    {"\"bumps\"", "@\"bump\"",
+     "material.gold.surface: found \"bump\"; expected the name of a surface, \"bumps\" (did you mean "
+     "\"bumps\"?)"},
+    {"material = \"gold\"", "material = @\"silver\"",
+     "shape.0.material: found \"silver\"; expected the name of a material, \"gold\""},
+    {"\"bumps\"", "\"bumps\"\nndf = @\"gaussians\"",
+     "material.gold.ndf: found \"gaussians\", which is not available in this version; expected an evaluator "
+     "that "
+     "is available: triangles"},
+    {"\"bumps\"", "\"bumps\"\nndf = @\"triangle\"",
+     "material.gold.ndf: found \"triangle\"; expected an evaluator that is available: triangles (did you "
+     "mean "
+     "\"triangles\"?)"},
+    {"", "[image]\naovs = [\"uv\", @\"depth\"]",
+     "image.aovs.1: found \"depth\" (a string); expected one of: ndf, uv, footprint, normal, queries"},
+    {"", "[image]\naovs = [\"uv\", @\"uv\"]", "image.aovs.1: found \"uv\" again; expected each at most once"},
+    {"[surface.bumps]", "@[surface.\"\"]\n[surface.bumps]",
+     "surface.\"\": found an empty name; expected one that can be referred to"},
+    {"\"bumps\"", "@\"\"",
+     "material.gold.surface: found \"\" (a string); expected a string that is not empty"},
+};
+INSTANTIATE_TEST_SUITE_P(WrongWord, Errors, testing::ValuesIn(wrong_words));
+
+const std::vector<Mistake> contradictions = {
+    {"[surface.bumps]", "@[surface.bumps]\nfile = \"x.png\"",
+     "surface.bumps: found both of \"file\" and \"generate\"; expected exactly one"},
+    {"", "[camera]\nposition = [1, 2, 3]\nlook_at = @[1, 2, 3]",
+     "camera.look_at: found the camera's position; expected another point"},
+    {"", "[camera]\nposition = [0, 0, 5]\nlook_at = [0, 0, 0]\nup = @[0, 0, 2]",
+     "camera.up: found no direction across the view; expected one that is not parallel to it"},
+    {"", "[camera]\nup = @[0, 0, 0]",
+     "camera.up: found no direction across the view; expected one that is not parallel to it"},
+    {"\"point\"\nposition = [0, 0, 4]", "\"directional\"\ndirection = @[0, 0, 0]",
+     "light.0.direction: found no length; expected the direction in which the light travels"},
+    {"\"bumps\"", "\"bumps\"\nspecular = @{ ior = 1.5, color = [1, 1, 1] }",
+     "material.gold.specular: found no single kind of reflection; expected { eta, k }, { ior } or { color }"},
+    {"\"bumps\"", "\"bumps\"\nspecular = @{}",
+     "material.gold.specular: found no single kind of reflection; expected { eta, k }, { ior } or { color }"},
+};
+INSTANTIATE_TEST_SUITE_P(Contradiction, Errors, testing::ValuesIn(contradictions));
+
+}  // namespace
+}  // namespace mica::test
