@@ -42,11 +42,11 @@ int run(const Options& options) {
     throw UsageError(fmt::format("--frames {}: the job has one frame, 0", options.frames));
   const OutputNames names = output_names(options);
   const Job job = load_job(options.job, options.overrides);
+  const Plan plan = make_plan(job);
+  Device device(options.device);
   for (const std::string& path : {names.exr, names.png, options.json})
     if (!path.empty()) prepare_output(path);
 
-  const Plan plan = make_plan(job);
-  Device device(options.device);
   Progress progress("rows", options.quiet);
   if (!options.quiet) fmt::print(stderr, "{}", describe(plan));
   const RenderResult result = render(job, plan, device, [&](int done, int rows) {
