@@ -13,8 +13,8 @@
 namespace mica::device_types {
 #endif
 
-// Storage of a normal map. A block is 64x64 texels with an apron of one texel below and left, two above and right, so
-// that bilinear and bicubic quads find all their corners in one block.
+// Storage of a normal map. A block is 64x64 texels with an apron of one texel below and left, two above and
+// right, so that bilinear and bicubic quads find all their corners in one block.
 enum {
   MICA_BLOCK = 64,           // texels a side
   MICA_BLOCK_ROW = 67,       // stored texels a row: apron included
@@ -26,29 +26,52 @@ enum {
   MICA_NODE_STRIDE = 64      // shorts a node: s_min[16], s_max[16], t_min[16], t_max[16]
 };
 
-// Normals (s, t) are 32-bit fixed point: the difference of two is exact, and 2^-30 is fine enough for roughness 1e-5.
+// Normals (s, t) are 32-bit fixed point: the difference of two is exact, and 2^-30 is fine enough for
+// roughness 1e-5.
 #define MICA_NORMAL_ONE 1073741824  // 2^30
 // Bounds are 16-bit fixed point, rounded outwards.
 #define MICA_BOUND_ONE 32767
 
+// Fields of a batch of glint queries: field f of query n is fields[f * pitch + n], all of four bytes.
+enum {
+  MICA_GLINT_CELL_I,  // int: the spatial cell of the mean on the finer level, modulo 2^32
+  MICA_GLINT_CELL_J,
+  MICA_GLINT_FRACTION_X,  // where in that cell the mean is, in [0, 1)
+  MICA_GLINT_FRACTION_Y,
+  MICA_GLINT_WHITEN_1X,  // rows of W with W^T W = covariance^-1, in cells of the finer level
+  MICA_GLINT_WHITEN_1Y,
+  MICA_GLINT_WHITEN_2X,
+  MICA_GLINT_WHITEN_2Y,
+  MICA_GLINT_LEVEL,   // int: the finer level l; its angular cells have a width of 2^-l
+  MICA_GLINT_WEIGHT,  // of the finer level, in [0, 1]; the next has the rest
+  MICA_GLINT_HALF_S,  // half vector on the unit disk
+  MICA_GLINT_HALF_T,
+  MICA_GLINT_INVERSE_ALPHA_X,  // 1 / roughness of the smooth distribution
+  MICA_GLINT_INVERSE_ALPHA_Y,
+  MICA_GLINT_MICRO_S,  // standard deviation of one glint's lobe on the disk of half vectors
+  MICA_GLINT_MICRO_T,
+  MICA_GLINT_FIELDS,
+  MICA_GLINT_PADDING = 256  // queries: a batch is padded to whole work-groups
+};
+
 // The map as the kernels see it. Texels are counted from the bottom left.
 typedef struct {
-  MICA_INT width, height;      // texels
+  MICA_INT width, height;       // texels
   MICA_INT blocks_x, blocks_y;  // blocks a period; the last ones may be partly filled
 } mica_map_grid;
 
 // One query in texel units. [Yan14] Eq. 6.
 typedef struct {
-  MICA_INT mean_i, mean_j;        // footprint mean, whole texels, in [0, width) x [0, height)
-  MICA_FLOAT mean_x, mean_y;      // and the rest, in [0, 1)
+  MICA_INT mean_i, mean_j;          // footprint mean, whole texels, in [0, width) x [0, height)
+  MICA_FLOAT mean_x, mean_y;        // and the rest, in [0, 1)
   MICA_FLOAT whiten_1x, whiten_1y;  // rows of W with W^T W = covariance^-1: the axes of the
   MICA_FLOAT whiten_2x, whiten_2y;  // footprint, each divided by its standard deviation in texels
-  MICA_FLOAT extent_x, extent_y;  // half the footprint's bounding box at the cutoff, texels
-  MICA_INT half_s, half_t;        // half vector, fixed point like the normals
-  MICA_FLOAT inverse_roughness;   // 1 / sigma_r
-  MICA_FLOAT scale;               // 1 / (4 pi^2 sqrt(det covariance) sigma_r^2): the peak of G_p G_r
-  MICA_FLOAT cutoff;              // c^2: where |whitened residual|^2 is larger, the integrand counts as zero
-  MICA_INT slot;                  // where the result goes
+  MICA_FLOAT extent_x, extent_y;    // half the footprint's bounding box at the cutoff, texels
+  MICA_INT half_s, half_t;          // half vector, fixed point like the normals
+  MICA_FLOAT inverse_roughness;     // 1 / sigma_r
+  MICA_FLOAT scale;                 // 1 / (4 pi^2 sqrt(det covariance) sigma_r^2): the peak of G_p G_r
+  MICA_FLOAT cutoff;  // c^2: where |whitened residual|^2 is larger, the integrand counts as zero
+  MICA_INT slot;      // where the result goes
 } mica_map_query;
 
 #ifdef __cplusplus

@@ -1,7 +1,8 @@
 // A wave: sixteen lanes that work on one query, from one source for both kinds of device.
 //
 // MICA_WAVE_ITEMS 0: the lanes are the elements of a float16 in one work-item (CPUs: one vector register).
-// MICA_WAVE_ITEMS 1: the lanes are the sixteen work-items of a work-group (GPUs); control flow is uniform in the group,
+// MICA_WAVE_ITEMS 1: the lanes are the sixteen work-items of a work-group (GPUs); control flow is uniform in
+// the group,
 //                    and what lanes tell each other goes through local memory.
 // Masks are integers, -1 or 0 a lane, in both.
 #ifndef MICA_WAVE_H
@@ -14,12 +15,15 @@
 #define WAVE_LANES 16
 
 // Index of the lowest set bit; `bits` is not zero.
-static inline int lowest_bit(uint bits) { return 31 - (int)clz(bits & (0u - bits)); }
+static inline int lowest_bit(uint bits) {
+  return 31 - (int)clz(bits & (0u - bits));
+}
 
 #if MICA_WAVE_ITEMS
 
 typedef float wave_float;
 typedef int wave_int;
+typedef uint wave_uint;
 #define WAVE_SHARED local
 #define WAVE_DECLARE_SCRATCH(name) local int name[WAVE_LANES]
 #define WAVE_ITEM_INDEX ((int)get_group_id(0))
@@ -28,6 +32,8 @@ typedef int wave_int;
 #define wave_to_int(x) convert_int(x)
 #define wave_bits_of(x) as_int(x)
 #define wave_from_bits(x) as_float(x)
+#define wave_to_uint(x) as_uint(x)
+#define wave_uint_to_float(x) convert_float(x)
 #define wave_mask(condition) (-(condition))
 
 static inline wave_float wave_select(wave_float otherwise, wave_float chosen, wave_int mask) {
@@ -58,6 +64,7 @@ static inline float wave_sum(wave_float x, local int* scratch) {
 }
 
 #define wave_rsqrt(x) rsqrt(x)
+#define wave_reciprocal(x) (1.0f / (x))
 
 static inline float wave_max(wave_float x, local int* scratch) {
   scratch[WAVE_LANE] = as_int(x);
@@ -69,6 +76,9 @@ static inline float wave_max(wave_float x, local int* scratch) {
 }
 
 #define wave_load_short(pointer) convert_int((pointer)[WAVE_LANE])
+#define wave_load_float(pointer) ((pointer)[WAVE_LANE])
+#define wave_load_int(pointer) ((pointer)[WAVE_LANE])
+#define wave_store_float(value, pointer) ((pointer)[WAVE_LANE] = (value))
 // Lane (x, y) = (lane & 3, lane >> 2) reads pointer[y * row + x], and its right neighbour.
 #define wave_load_4x4(pointer, row) ((pointer)[(WAVE_LANE >> 2) * (row) + (WAVE_LANE & 3)])
 static inline void wave_load_4x4_pair(global const int* pointer, int row, private wave_int* left,
@@ -89,9 +99,11 @@ static inline void wave_pack(local float* list, uint bits, wave_float value) {
 
 typedef float16 wave_float;
 typedef int16 wave_int;
+typedef uint16 wave_uint;
 // The same at any address: some compilers split vload16 and vstore16 into quarters.
 typedef float16 wave_float_anywhere __attribute__((aligned(4)));
 typedef int8 wave_half_int_anywhere __attribute__((aligned(4)));
+typedef int16 wave_int_anywhere __attribute__((aligned(4)));
 typedef short16 wave_short_anywhere __attribute__((aligned(2)));
 #define WAVE_SHARED private
 #define WAVE_DECLARE_SCRATCH(name) int name[1]
@@ -101,6 +113,9 @@ typedef short16 wave_short_anywhere __attribute__((aligned(2)));
 #define wave_to_int(x) convert_int16(x)
 #define wave_bits_of(x) as_int16(x)
 #define wave_from_bits(x) as_float16(x)
+#define wave_to_uint(x) as_uint16(x)
+#define wave_uint_to_float(x) \
+  convert_float16(as_int16(x))  // of values below 2^31, whose conversion is cheaper
 #define wave_mask(condition) (condition)
 
 static inline wave_float wave_select(wave_float otherwise, wave_float chosen, wave_int mask) {
@@ -148,6 +163,16 @@ static inline wave_float wave_rsqrt(wave_float x) {
 #endif
 }
 
+// 1 / x of a normal number, relative error 2e-7.
+static inline wave_float wave_reciprocal(wave_float x) {
+#if MICA_AVX512
+  const wave_float y = __builtin_ia32_rcp14ps512_mask(x, x, (ushort)0xffff);
+  return y * fma(-x, y, 2.0f);  // one step of Newton's
+#else
+  return 1.0f / x;
+#endif
+}
+
 static inline float wave_max(wave_float x, private int* scratch) {
   (void)scratch;
   const float8 m8 = max(x.lo, x.hi);
@@ -157,6 +182,9 @@ static inline float wave_max(wave_float x, private int* scratch) {
 }
 
 #define wave_load_short(pointer) convert_int16(*(global const wave_short_anywhere*)(pointer))
+#define wave_load_float(pointer) (*(global const wave_float_anywhere*)(pointer))
+#define wave_load_int(pointer) (*(global const wave_int_anywhere*)(pointer))
+#define wave_store_float(value, pointer) (*(global wave_float_anywhere*)(pointer) = (value))
 
 // Lane (x, y) = (lane & 3, lane >> 2) reads pointer[y * row + x].
 static inline wave_int wave_load_4x4(global const int* pointer, int row) {
@@ -167,14 +195,15 @@ static inline wave_int wave_load_4x4(global const int* pointer, int row) {
 // The same and its right neighbour; reads eight of each row, so that loads and shuffles are whole registers.
 static inline void wave_load_4x4_pair(global const int* pointer, int row, private wave_int* left,
                                       private wave_int* right) {
-#define ROW(y) (*(global const wave_half_int_anywhere*)(pointer + (y) * row))
+#define ROW(y) (*(global const wave_half_int_anywhere*)(pointer + (y)*row))
   const int16 low = (int16)(ROW(0), ROW(1)), high = (int16)(ROW(2), ROW(3));
 #undef ROW
   *left = shuffle2(low, high, (uint16)(0, 1, 2, 3, 8, 9, 10, 11, 16, 17, 18, 19, 24, 25, 26, 27));
   *right = shuffle2(low, high, (uint16)(1, 2, 3, 4, 9, 10, 11, 12, 17, 18, 19, 20, 25, 26, 27, 28));
 }
 
-// Writes the lanes in `bits`, packed, to list[0...]; what follows them, up to sixteen in all, is undefined afterwards.
+// Writes the lanes in `bits`, packed, to list[0...]; what follows them, up to sixteen in all, is undefined
+// afterwards.
 static inline void wave_pack(private float* list, uint bits, wave_float value) {
 #if MICA_AVX512
   *(private wave_float_anywhere*)list = __builtin_ia32_compresssf512_mask(value, value, (ushort)bits);
@@ -190,7 +219,8 @@ static inline void wave_pack(private float* list, uint bits, wave_float value) {
 
 #endif
 
-// A list of records of several floats, taken off a wave at a time. Field k of record n is records[k * WAVE_LIST + n].
+// A list of records of several floats, taken off a wave at a time. Field k of record n is records[k *
+// WAVE_LIST + n].
 #define WAVE_LIST (2 * WAVE_LANES)
 typedef struct {
   WAVE_SHARED float* records;

@@ -1,0 +1,100 @@
+#include "host/engine/grid_evaluator.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+
+#include "host/base/error.h"
+
+namespace mica {
+namespace {
+
+constexpr std::size_t kWaveLanes = 16;
+
+double seconds_of(const cl::Event& event) {
+  return 1e-9 * static_cast<double>(event.getProfilingInfo<CL_PROFILING_COMMAND_END>() -
+                                    event.getProfilingInfo<CL_PROFILING_COMMAND_START>());
+}
+
+}  // namespace
+
+/// Queries on the device and the memory that it reads and writes meanwhile.
+class GridDensities : public PendingDensities {
+ public:
+  ~GridDensities() override {
+    for (const cl::Event& event : done) clWaitForEvents(1, &event());
+  }
+
+  std::vector<float> wait() override {
+    try {
+      if (!done.empty()) cl::Event::waitForEvents(done);
+      for (const cl::Event& kernel : kernels) *device_seconds += seconds_of(kernel);
+    } catch (const cl::Error& error) {
+      throw opencl_error(error, "evaluating grid");
+    }
+    for (float& density : densities) {
+      if (!std::isfinite(density)) throw DeviceError("evaluating grid: a density is not finite");
+      density = std::max(density, 0.0f);
+    }
+    return std::move(densities);
+  }
+
+  std::deque<GridBatch> batches;  // a deque: what the device reads stays where it is
+  std::vector<float> densities;
+  std::vector<cl::Event> kernels, done;
+  std::shared_ptr<double> device_seconds;
+};
+
+GridEvaluator::GridEvaluator(Device& device, const GlintGrid& grid, std::optional<WaveForm> wave_form,
+                             std::size_t batch_queries)
+    : device_(device), grid_(grid), wave_form_(wave_form.value_or(device.wave_form())) {
+  const std::string problem = glint_grid_problem(grid);
+  if (!problem.empty()) throw UsageError("glints: " + problem);
+  const std::size_t fits =
+      device.info().allocation_bytes / (device_types::MICA_GLINT_FIELDS * sizeof(std::int32_t));
+  batch_queries_ = std::clamp<std::size_t>(batch_queries, 1, fits - device_types::MICA_GLINT_PADDING);
+  kernel_ = device.kernel(
+      "grid.cl", "grid",
+      fmt::format("-DMICA_DISTRIBUTION={}", grid.distribution == Distribution::beckmann ? 0 : 1), wave_form_);
+}
+
+std::unique_ptr<PendingDensities> GridEvaluator::start(const std::vector<Query>& queries) {
+  auto pending = std::make_unique<GridDensities>();
+  pending->device_seconds = device_seconds_;
+  pending->densities.resize(queries.size());
+  for (std::size_t first = 0; first < queries.size(); first += batch_queries_) {
+    const std::size_t count = std::min(batch_queries_, queries.size() - first);
+    enqueue(to_grid_batch(queries, first, count, grid_), first, count, pending.get());
+  }
+  return pending;
+}
+
+void GridEvaluator::enqueue(GridBatch batch, std::size_t first, std::size_t count, GridDensities* pending) {
+  pending->batches.push_back(std::move(batch));
+  const GridBatch& kept = pending->batches.back();
+  const std::size_t bytes = kept.fields.size() * sizeof(std::int32_t);
+  const cl::Buffer fields = device_.buffer(bytes, CL_MEM_READ_ONLY, "a batch of queries");
+  const cl::Buffer densities =
+      device_.buffer(kept.pitch * sizeof(float), CL_MEM_WRITE_ONLY, "a batch of densities");
+  try {
+    device_.queue().enqueueWriteBuffer(fields, CL_FALSE, 0, bytes, kept.fields.data());
+    kernel_.setArg(0, fields);
+    kernel_.setArg(1, static_cast<cl_int>(kept.pitch));
+    kernel_.setArg(2, static_cast<cl_uint>(grid_.seed));
+    kernel_.setArg(3, densities);
+    const std::size_t items = wave_form_ == WaveForm::items ? kept.pitch : kept.pitch / kWaveLanes;
+    cl::Event kernel_done, read_done;
+    device_.queue().enqueueNDRangeKernel(kernel_, cl::NullRange, items, kWaveLanes, nullptr, &kernel_done);
+    device_.queue().enqueueReadBuffer(densities, CL_FALSE, 0, count * sizeof(float),
+                                      pending->densities.data() + first, nullptr, &read_done);
+    pending->kernels.push_back(kernel_done);
+    pending->done.push_back(read_done);
+    device_.queue().flush();
+  } catch (const cl::Error& error) {
+    throw opencl_error(error, "running grid");
+  }
+}
+
+}  // namespace mica

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host/device/device.h"
+#include "host/engine/evaluator.h"
+#include "host/engine/grid_query.h"
+
+namespace mica {
+
+class GridDensities;
+
+/// `grid`: glints on an implicit grid, without a map, a precomputation or memory. [Kem25]; kernels/grid.cl.
+class GridEvaluator : public Evaluator {
+ public:
+  /// @param batch_queries queries a launch, at most. Throws UsageError for a grid with a problem. `device`
+  /// must outlive the evaluator.
+  GridEvaluator(Device& device, const GlintGrid& grid, std::optional<WaveForm> wave_form = {},
+                std::size_t batch_queries = 1 << 18);
+
+  /// All queries must pass `grid_query_problem`.
+  std::unique_ptr<PendingDensities> start(const std::vector<Query>& queries) override;
+  std::string name() const override { return "grid"; }
+  std::size_t device_bytes() const override { return 0; }
+  double build_seconds() const override { return 0; }
+  double device_seconds() const override { return *device_seconds_; }
+
+ private:
+  void enqueue(GridBatch batch, std::size_t first, std::size_t count, GridDensities* pending);
+
+  Device& device_;
+  GlintGrid grid_;
+  WaveForm wave_form_;
+  std::size_t batch_queries_;
+  std::shared_ptr<double> device_seconds_ = std::make_shared<double>(0.0);  // shared with pending densities
+  cl::Kernel kernel_;
+};
+
+}  // namespace mica

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "host/base/query.h"
+
+namespace mica::reference {
+
+/// A glint surface as [Kem25] Algorithm 1 defines it, in double precision and without regard to speed.
+struct GlintProcess {
+  bool beckmann = false;                ///< else Trowbridge-Reitz
+  double alpha_x = 0.3, alpha_y = 0.3;  ///< roughness
+  double density = 1e6;                 ///< cells per unit area of uv
+  double stretch = 1;                   ///< of each glint along u
+  std::uint32_t seed = 1;
+
+  /// Density of normals over the disk at the query's half vector.
+  double density_of(const Query& query) const;
+
+  /// D of the smooth distribution, per area of the disk (s, t).
+  double smooth_density(const Eigen::Vector2d& half_vector) const;
+  /// T: to the unit square, in whose inscribed disk glints are uniform.
+  Eigen::Vector2d to_disk(const Eigen::Vector2d& half_vector) const;
+  Eigen::Vector2d from_disk(const Eigen::Vector2d& point) const;
+};
+
+}  // namespace mica::reference
