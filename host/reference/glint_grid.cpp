@@ -18,22 +18,6 @@ std::uint32_t mix(std::uint32_t x) {
 }
 constexpr std::uint32_t kCellMask = 0x7fffffffu;
 
-struct Glint {
-  Eigen::Vector2d place, angle;  ///< in their cells, (0, 1)^2
-  double roulette;
-};
-
-Glint glint_of_cell(std::int64_t i, std::int64_t j, std::int64_t k, std::int64_t l, int level,
-                    std::uint32_t seed) {
-  const auto u32 = [](std::int64_t x) { return static_cast<std::uint32_t>(x); };
-  const std::uint32_t row = mix((u32(j) & kCellMask) * 0x9e3779b1u + u32(level) * 0x85ebca77u + seed);
-  const std::uint32_t spatial = mix(row + (u32(i) & kCellMask) * 0xc2b2ae3du);
-  const std::uint32_t angular = mix(u32(l) * 0x27d4eb2fu + u32(k) * 0x165667b1u);
-  const std::uint32_t a = mix(spatial + angular), b = mix(a + 0x9e3779b9u), c = (a + b) * 0x2545f495u;
-  const auto unit = [](std::uint32_t bits) { return (bits + 0.5) / 65536; };
-  return {{unit(a & 0xffffu), unit(a >> 16)}, {unit(b & 0xffffu), unit(b >> 16)}, unit(c >> 16)};
-}
-
 double smoothstep(double low, double high, double x) {
   const double t = std::clamp((x - low) / (high - low), 0.0, 1.0);
   return t * t * (3 - 2 * t);
@@ -103,6 +87,17 @@ double level_sum(const Problem& problem, int level, double weight) {
 }
 
 }  // namespace
+
+Glint glint_of_cell(std::int64_t i, std::int64_t j, std::int64_t k, std::int64_t l, int level,
+                    std::uint32_t seed) {
+  const auto u32 = [](std::int64_t x) { return static_cast<std::uint32_t>(x); };
+  const std::uint32_t row = mix((u32(j) & kCellMask) * 0x9e3779b1u + u32(level) * 0x85ebca77u + seed);
+  const std::uint32_t spatial = mix(row + (u32(i) & kCellMask) * 0xc2b2ae3du);
+  const std::uint32_t angular = mix(u32(l) * 0x27d4eb2fu + u32(k) * 0x165667b1u);
+  const std::uint32_t a = mix(spatial + angular), b = mix(a + 0x9e3779b9u), c = (a + b) * 0x2545f495u;
+  const auto unit = [](std::uint32_t bits) { return (bits + 0.5) / 65536; };
+  return {{unit(a & 0xffffu), unit(a >> 16)}, {unit(b & 0xffffu), unit(b >> 16)}, unit(c >> 16)};
+}
 
 double GlintProcess::smooth_density(const Eigen::Vector2d& half_vector) const {
   const double cos2 = 1 - half_vector.squaredNorm();

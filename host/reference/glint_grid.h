@@ -7,6 +7,15 @@
 
 namespace mica::reference {
 
+/// What is random about the glint of a cell; kernels/glint_hash.h, written again.
+struct Glint {
+  Eigen::Vector2d place, angle;  ///< in the cell, (0, 1)^2: on the surface, on the disk
+  double roulette;               ///< (0, 1)
+};
+/// Of the spatial cell (i, j) and the angular cell (k, l) of a level.
+Glint glint_of_cell(std::int64_t i, std::int64_t j, std::int64_t k, std::int64_t l, int level,
+                    std::uint32_t seed);
+
 /// A glint surface as [Kem25] Algorithm 1 defines it, in double precision and without regard to speed.
 struct GlintProcess {
   bool beckmann = false;                ///< else Trowbridge-Reitz
