@@ -8,10 +8,13 @@
 
 #include "host/app/commands.h"
 #include "host/app/evaluation.h"
+#include "host/app/grid_options.h"
 #include "host/app/json_file.h"
 #include "host/app/map_options.h"
 #include "host/app/output.h"
 #include "host/app/query_table.h"
+#include "host/base/error.h"
+#include "host/engine/map_query.h"
 #include "host/image/image.h"
 
 namespace mica::app {
@@ -21,6 +24,7 @@ using Clock = std::chrono::steady_clock;
 
 struct EvalOptions {
   MapOptions map;
+  GridOptions grid;
   std::string quantity = "ndf", ndf, queries, output, json;
   std::optional<double> roughness, tolerance;
   int device = 0;
@@ -37,14 +41,47 @@ double lap(Clock::time_point* start) {
   return seconds;
 }
 
-nlohmann::json summary(const EvalOptions& options, const Surface& surface, const SurfaceReport& report,
-                       const OpenEvaluator& open, std::size_t count, const PhaseTimes& times) {
+/// What is evaluated: glints on a grid, or a surface, which has to outlive its evaluator.
+struct Subject {
+  bool is_grid = false;
+  GlintGrid grid;
+  std::optional<Surface> surface;
+  SurfaceReport report;
+};
+
+Subject load_subject(const EvalOptions& options) {
+  Subject subject;
+  subject.is_grid = options.ndf == "grid";
+  if (subject.is_grid) {
+    subject.grid = to_glint_grid(options.grid);
+  } else {
+    if (options.map.path.empty()) throw UsageError(fmt::format("--ndf {} needs a --map", options.ndf));
+    subject.surface = load_map(options.map, &subject.report);
+  }
+  return subject;
+}
+
+nlohmann::json describe(const EvalOptions& options, const Subject& subject) {
+  if (subject.is_grid)
+    return {{"distribution", options.grid.distribution},
+            {"alpha", {subject.grid.alpha_x, subject.grid.alpha_y}},
+            {"density", subject.grid.density},
+            {"stretch", subject.grid.stretch},
+            {"seed", subject.grid.seed}};
+  return {{"file", options.map.path},
+          {"width", subject.surface->width()},
+          {"height", subject.surface->height()},
+          {"interpolation", options.map.interpolation},
+          {"notes", subject.report.notes},
+          {"warnings", subject.report.warnings}};
+}
+
+nlohmann::json summary(const EvalOptions& options, const Subject& subject, const OpenEvaluator& open,
+                       std::size_t count, const PhaseTimes& times) {
   nlohmann::json json;
   json["command"] = "eval";
   json["quantity"] = options.quantity;
-  json["map"] = {{"file", options.map.path},   {"width", surface.width()},
-                 {"height", surface.height()}, {"interpolation", options.map.interpolation},
-                 {"notes", report.notes},      {"warnings", report.warnings}};
+  json[subject.is_grid ? "glints" : "map"] = describe(options, subject);
   json["evaluator"] = open.evaluator->name();
   if (options.tolerance) json["tolerance"] = *options.tolerance;
   json["device"] = open.device ? describe_device(open.device->info()) : nlohmann::json();
@@ -57,6 +94,12 @@ nlohmann::json summary(const EvalOptions& options, const Surface& surface, const
   return json;
 }
 
+QueryTable read_queries(const EvalOptions& options) {
+  if (options.ndf == "grid")
+    return QueryTable(options.queries, options.grid.microroughness, "--microroughness");
+  return QueryTable(options.queries, options.roughness);
+}
+
 int run(const EvalOptions& options) {
   check_tolerance(options.ndf, options.tolerance);
   check_extension(options.output, {".npy"});
@@ -65,12 +108,16 @@ int run(const EvalOptions& options) {
 
   PhaseTimes times;
   Clock::time_point start = Clock::now();
-  const QueryTable table(options.queries, options.roughness);
-  SurfaceReport report;
-  const Surface surface = load_map(options.map, &report);
-  table.check(surface.width(), surface.height());
+  const QueryTable table = read_queries(options);
+  const Subject subject = load_subject(options);
+  table.check([&](const Query& query) {
+    return subject.is_grid ? grid_query_problem(query)
+                           : query_problem(query, subject.surface->width(), subject.surface->height());
+  });
   times.load = lap(&start);
-  const OpenEvaluator open = open_evaluator(options.ndf, options.tolerance, options.device, surface);
+  const OpenEvaluator open =
+      subject.is_grid ? open_grid(subject.grid, options.device)
+                      : open_evaluator(options.ndf, options.tolerance, options.device, *subject.surface);
   times.build = lap(&start);
   const std::vector<float> densities =
       evaluate_all(open.evaluator.get(), table.size(), [&](std::size_t row) { return table.query(row); });
@@ -81,8 +128,14 @@ int run(const EvalOptions& options) {
   spdlog::info("{} queries by {} on {} in {:.3g} s", densities.size(), open.evaluator->name(),
                open.device ? open.device->info().name : "the host", times.evaluate);
   if (!options.json.empty())
-    write_json(options.json, summary(options, surface, report, open, densities.size(), times));
+    write_json(options.json, summary(options, subject, open, densities.size(), times));
   return 0;
+}
+
+std::vector<std::string> evaluator_choices() {
+  std::vector<std::string> names = ndf_names();
+  names.push_back("grid");
+  return names;
 }
 
 }  // namespace
@@ -100,9 +153,11 @@ void add_eval(CLI::App& app, Command* chosen) {
       "v)\n"
       "  roughness    standard deviation of the intrinsic roughness on the disk, 1e-5 to 1; replaces "
       "--roughness\n"
+      "With --ndf grid, uv is that of its --density, and roughness the --microroughness of one glint.\n"
       "Output: D, the density of normals over the unit disk at (s, t), float32, shape (rows,).\n"
       "A row that cannot be evaluated is named, and nothing is written.");
   add_map_options(command, &options->map);
+  add_grid_options(command, &options->grid);
   command->add_option("--quantity", options->quantity, "What is evaluated; ndf is all there is so far")
       ->type_name("NAME")
       ->check(CLI::IsMember(std::vector<std::string>{"ndf"}))
@@ -110,7 +165,7 @@ void add_eval(CLI::App& app, Command* chosen) {
   command->add_option("--ndf", options->ndf, "Evaluator; reference is the host in double precision")
       ->required()
       ->type_name("NAME")
-      ->check(CLI::IsMember(ndf_names()));
+      ->check(CLI::IsMember(evaluator_choices()));
   command
       ->add_option("--roughness", options->roughness,
                    "Of all rows, 1e-5 to 1; a Beckmann alpha is sqrt(2) times this")

@@ -10,6 +10,7 @@
 #include "host/app/interrupt.h"
 #include "host/app/progress.h"
 #include "host/base/error.h"
+#include "host/engine/grid_evaluator.h"
 #include "host/engine/make_evaluator.h"
 #include "host/reference/oracle.h"
 
@@ -91,6 +92,13 @@ OpenEvaluator open_evaluator(const std::string& name, std::optional<double> tole
     open.device = std::make_unique<Device>(device_index);
     open.evaluator = make_evaluator(name, *open.device, surface);
   }
+  return open;
+}
+
+OpenEvaluator open_grid(const GlintGrid& grid, int device_index) {
+  OpenEvaluator open;
+  open.device = std::make_unique<Device>(device_index);
+  open.evaluator = std::make_unique<GridEvaluator>(*open.device, grid);
   return open;
 }
 

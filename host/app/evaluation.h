@@ -8,6 +8,7 @@
 
 #include "host/device/device.h"
 #include "host/engine/evaluator.h"
+#include "host/engine/grid_query.h"
 #include "host/surface/surface.h"
 
 namespace mica::app {
@@ -28,6 +29,9 @@ struct OpenEvaluator {
 /// Throws DeviceError, and UsageError for a tolerance that the evaluator cannot keep.
 OpenEvaluator open_evaluator(const std::string& name, std::optional<double> tolerance, int device_index,
                              const Surface& surface);
+
+/// `grid`, which needs no surface.
+OpenEvaluator open_grid(const GlintGrid& grid, int device_index);
 
 /// Throws UsageError when evaluator `name` cannot keep a relative error of `tolerance`.
 void check_tolerance(const std::string& name, std::optional<double> tolerance);

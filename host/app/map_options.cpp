@@ -29,9 +29,7 @@ CLI::Validator one_of(const std::map<std::string, T>& values) {
 }  // namespace
 
 void add_map_options(CLI::App* command, MapOptions* options) {
-  command->add_option("--map", options->path, "Normal map: an EXR, PNG or TIFF file")
-      ->required()
-      ->type_name("FILE");
+  command->add_option("--map", options->path, "Normal map: an EXR, PNG or TIFF file")->type_name("FILE");
   command
       ->add_option("--encoding", options->encoding,
                    "What its pixels are: unorm (n = 2c - 1), signed (n = c), height or slope; "

@@ -162,6 +162,7 @@ void add_ndf(CLI::App& app, Command* chosen) {
       "is shown\n"
       "at 80%, brighter ones roll off.");
   add_map_options(command, &options->map);
+  command->get_option("--map")->required();
   add_numbers(command, "--center", &options->center_uv, 2, 2,
               "Mean of the Gaussian footprint, in map periods: the map is [0,1)^2", "U,V")
       ->required();

@@ -6,7 +6,6 @@
 #include <filesystem>
 
 #include "host/base/error.h"
-#include "host/engine/map_query.h"
 
 namespace mica::app {
 namespace {
@@ -29,11 +28,10 @@ Table read_table(const std::string& path) {
 
 }  // namespace
 
-QueryTable::QueryTable(const std::string& path, std::optional<double> roughness)
+QueryTable::QueryTable(const std::string& path, std::optional<double> roughness, const std::string& option)
     : path_(path), table_(read_table(path)) {
   if (table_.columns == kColumns.size()) return;
-  if (!roughness)
-    throw UsageError(fmt::format("{}: has no column roughness, so --roughness is needed", path));
+  if (!roughness) throw UsageError(fmt::format("{}: has no column roughness, so {} is needed", path, option));
   roughness_ = *roughness;
 }
 
@@ -46,11 +44,11 @@ Query QueryTable::query(std::size_t row) const {
   return query;
 }
 
-void QueryTable::check(int map_width, int map_height) const {
+void QueryTable::check(const std::function<std::string(const Query&)>& problem_of) const {
   std::size_t count = 0;
   std::string named;
   for (std::size_t row = 0; row < size(); ++row) {
-    const std::string problem = query_problem(query(row), map_width, map_height);
+    const std::string problem = problem_of(query(row));
     if (problem.empty()) continue;
     if (++count <= kMaxNamed) named += fmt::format("\n  row {}: {}", row, problem);
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -13,16 +14,17 @@ namespace mica::app {
 class QueryTable {
  public:
   /// Reads a .npy or .csv file.
-  /// @param roughness of all rows, unless the file has that column.
+  /// @param roughness of all rows, unless the file has that column. @param option that gives it.
   /// Throws FileError (unreadable, damaged) or UsageError (other columns, or no roughness at all).
-  QueryTable(const std::string& path, std::optional<double> roughness);
+  QueryTable(const std::string& path, std::optional<double> roughness,
+             const std::string& option = "--roughness");
 
   std::size_t size() const { return table_.rows; }
   Query query(std::size_t row) const;
 
-  /// Throws UsageError naming the first ten rows that cannot be evaluated on a map of that many texels, and
-  /// why, and how many there are.
-  void check(int map_width, int map_height) const;
+  /// Throws UsageError naming the first ten rows that cannot be evaluated, and why, and how many there are.
+  /// @param problem of a query: why it cannot, or empty.
+  void check(const std::function<std::string(const Query&)>& problem) const;
 
  private:
   std::string path_;

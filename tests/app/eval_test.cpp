@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "host/reference/glint_grid.h"
 #include "tests/app/command.h"
 
 namespace mica::app {
@@ -124,6 +125,31 @@ TEST_F(Eval, TheReferenceNeedsNoDevice) {
   write("q.npy", npy_of(query_rows(10)));
   std::filesystem::create_directories(path("no_drivers"));
   EXPECT_EQ(eval("q.npy", "--ndf reference --roughness 0.01", "OCL_ICD_VENDORS=no_drivers").size(), 10u);
+}
+
+TEST_F(Eval, GlintsNeedNoMap) {
+  const std::string arguments =
+      "eval --ndf grid --alpha 0.3,0.2 --distribution beckmann --microroughness 0.02 --density 1e5 --stretch "
+      "2 "
+      "--seed 5 --queries rows.npy -o D.npy --json D.json";
+  write("rows.npy", npy_of(query_rows(50)));
+  const Outcome outcome = mica(arguments);
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const std::vector<float> densities = this->densities("D.npy");
+  ASSERT_EQ(densities.size(), 50u);
+  const reference::GlintProcess process{true, 0.3, 0.2, 1e5, 2, 5};
+  const Rows rows = query_rows(50);
+  for (std::size_t n = 0; n < rows.size(); ++n) {
+    Query query;
+    query.footprint.mean_uv = {rows[n][0], rows[n][1]};
+    query.footprint.cov_uv << rows[n][2], rows[n][3], rows[n][3], rows[n][4];
+    query.half_vector = {rows[n][5], rows[n][6]};
+    query.roughness = 0.02;
+    const double expected = process.density_of(query);
+    EXPECT_NEAR(densities[n], expected, 1e-4 * expected + 1e-6 * process.smooth_density(query.half_vector))
+        << n;
+  }
+  EXPECT_EQ(nlohmann::json::parse(bytes(path("D.json")))["glints"]["density"], 1e5);
 }
 
 TEST_F(Eval, SaysWhatItDid) {

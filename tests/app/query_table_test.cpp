@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "host/engine/map_query.h"
 #include "tests/app/command.h"
 
 namespace mica::app {
@@ -16,7 +17,7 @@ class QueryTables : public FolderTest {
     std::ofstream(path(file), std::ios::binary) << content;
     try {
       const QueryTable table(path(file), 0.01);
-      table.check(32, 32);
+      table.check([](const Query& query) { return query_problem(query, 32, 32); });
     } catch (const UsageError& error) {
       return std::string("usage: ") + error.what();
     } catch (const FileError& error) {

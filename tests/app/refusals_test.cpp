@@ -9,6 +9,7 @@ namespace {
 
 constexpr int kUsage = 2, kDevice = 3, kFile = 4;
 const std::string kEval = "eval --ndf triangles --roughness 0.01 -o D.npy ";
+const std::string kGrid = "eval --ndf grid --microroughness 0.01 -o D.npy ";
 const std::string kNdf = "ndf --ndf triangles --roughness 0.01 --size 8 -o ndf.exr ";
 
 struct Refusal {
@@ -114,6 +115,14 @@ INSTANTIATE_TEST_SUITE_P(
                 "unorm"},
         Refusal{"RoughnessMissing", "eval --ndf triangles --map map.exr --queries good.npy -o D.npy", kUsage,
                 "--roughness is needed"},
+        Refusal{"MapMissing", kEval + "--queries good.npy", kUsage, "--ndf triangles needs a --map"},
+        Refusal{"GridRoughness", kGrid + "--alpha 2 --queries good.npy", kUsage, "outside of 1e-4 to 1"},
+        Refusal{"GridDistribution", kGrid + "--distribution round --queries good.npy", kUsage,
+                "--distribution"},
+        Refusal{"GridDensity", kGrid + "--density 0 --queries good.npy", kUsage, "density 0"},
+        Refusal{"GridMicroroughness", "eval --ndf grid --queries good.npy -o D.npy", kUsage,
+                "--microroughness"},
+        Refusal{"GridNaN", kGrid + "--queries nan_row.npy", kUsage, "row 3"},
         Refusal{"Tolerance", kEval + "--tolerance 1e-6 --map map.exr --queries good.npy", kUsage,
                 "--ndf reference"},
         Refusal{"OutputName",

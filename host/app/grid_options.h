@@ -1,0 +1,26 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host/engine/grid_query.h"
+
+namespace mica::app {
+
+/// Options of `--ndf grid`: a surface of glints that needs no map.
+struct GridOptions {
+  std::vector<double> alpha = {0.3};
+  std::string distribution = "ggx";
+  double density = 1e6, stretch = 1;
+  std::optional<double> microroughness;
+  std::uint32_t seed = 1;
+};
+
+void add_grid_options(CLI::App* command, GridOptions* options);
+
+/// Throws UsageError for values out of range.
+GlintGrid to_glint_grid(const GridOptions& options);
+
+}  // namespace mica::app
