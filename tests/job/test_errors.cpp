@@ -115,8 +115,8 @@ const std::vector<Mistake> out_of_range = {
      "camera.up.1: found -inf (a float); expected a number in [-1000000, 1000000]"},
     {"", "[audit]\nsamples = @-1", "audit.samples: found -1; expected an integer in [0, 1000000]"},
     {"", "seed = @-1", "seed: found -1; expected an integer from 0 below 2^63"},
-    {"\"spectrum\"", "\"spectrum\"\nresolution = @1000",
-     "surface.bumps.resolution: found 1000; expected a power of two"},
+    {"\"spectrum\"", "\"spectrum\"\nresolution = @3",
+     "surface.bumps.resolution: found 3; expected an integer in [4, 16384]"},
     {"\"spectrum\"", "\"spectrum\"\nresolution = 64\ncorrelation = @65",
      "surface.bumps.correlation: found 65; expected a number in (0, 64]"},
     {"\"spectrum\"", "\"flakes\"\nresolution = 100\nflake_size = @26",
@@ -137,7 +137,9 @@ INSTANTIATE_TEST_SUITE_P(OutOfRange, Errors, testing::ValuesIn(out_of_range));
 
 const std::vector<Mistake> wrong_words = {
     {"\"spectrum\"", "@\"spectrun\"",
-     "surface.bumps.generate: found \"spectrun\" (a string); expected one of: spectrum, flakes (did you mean "
+     "surface.bumps.generate: found \"spectrun\" (a string); expected one of: spectrum, flakes, brushed, "
+     "scratches, "
+     "dents, bumps, waves, layers (did you mean "
      "\"spectrum\"?)"},
     {"\"spectrum\"", "\"spectrum\"\ninterpolation = @\"cubic\"",
      "surface.bumps.interpolation: found \"cubic\" (a string); expected one of: nearest, bilinear, bicubic "
