@@ -17,7 +17,7 @@ void cut(double slope, double start, double low_value, double high_value, double
     if (!(low_value <= start && start <= high_value)) *high = *low - 1;
     return;
   }
-  const auto [first, last] = std::minmax((low_value - start) / slope, (high_value - start) / slope);
+  const auto [first, last] = std::minmax({(low_value - start) / slope, (high_value - start) / slope});
   *low = std::max(*low, first);
   *high = std::min(*high, last);
 }
@@ -26,7 +26,7 @@ void cut(double slope, double start, double low_value, double high_value, double
 
 TexelRange Extent::rows(double center_v) const {
   const double along = half_length * std::abs(axis.y());
-  const auto [low, high] = std::minmax(across_low * axis.x(), across_high * axis.x());
+  const auto [low, high] = std::minmax({across_low * axis.x(), across_high * axis.x()});
   return texels_between(center_v - along + low, center_v + along + high);
 }
 
