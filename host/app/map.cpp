@@ -1,11 +1,16 @@
 // mica map: synthesises a normal map.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
+
+#include <functional>
+#include <memory>
 
 #include "host/app/commands.h"
 #include "host/app/evaluation.h"
 #include "host/app/map_options.h"
 #include "host/app/output.h"
+#include "host/base/error.h"
 #include "host/base/version.h"
 #include "host/image/image.h"
 #include "host/surface/export.h"
@@ -29,63 +34,172 @@ int run(const SurfaceDescription& description, const std::string& recipe, const 
   return 0;
 }
 
-CLI::App* add_kind(CLI::App* map, const std::string& name, const std::string& description, int* resolution,
-                   std::uint64_t* seed, std::string* output) {
-  CLI::App* kind = map->add_subcommand(name, description);
-  kind->add_option("--resolution", *resolution, "Texels a side")->type_name("TEXELS")->capture_default_str();
-  kind->add_option("--seed", *seed, "Of the random numbers; the same seed gives the same map everywhere")
-      ->type_name("N")
-      ->capture_default_str();
-  kind->add_option("-o,--output", *output, "The map: EXR, three float channels, signed, green up")
-      ->required()
-      ->type_name("FILE");
-  return kind;
-}
+/// One KIND of map on the command line: its options, and the recipe that the file keeps.
+class Kind {
+ public:
+  Kind(CLI::App* map, const std::string& name, const std::string& description)
+      : name_(name), app_(map->add_subcommand(name, description)) {
+    app_->add_option("-o,--output", *output_, "The map: EXR, three float channels, signed, green up")
+        ->required()
+        ->type_name("FILE");
+  }
+
+  /// @param value at its default; has to live as long as the command.
+  template <typename T>
+  CLI::Option* add(const std::string& option, T* value, const std::string& type,
+                   const std::string& description) {
+    recipe_.push_back([=] { return fmt::format(" {} {}", option, *value); });
+    return app_->add_option(option, *value, description)->type_name(type)->capture_default_str();
+  }
+
+  template <typename Source>
+  void add_resolution_and_seed(Source* source) {
+    add("--resolution", &source->resolution, "TEXELS", "Texels a side");
+    add("--seed", &source->seed, "N", "Of the random numbers; the same seed gives the same map everywhere");
+  }
+
+  void footer(const std::string& text) { app_->footer(text); }
+
+  /// @param describe returns the map's description, once the options are read.
+  template <typename Describe>
+  void choose(Command* chosen, Interpolation interpolation, Describe describe) {
+    app_->callback([=, kind = *this] {
+      *chosen = [=] {
+        std::string recipe = kind.name_;
+        for (const auto& option : kind.recipe_) recipe += option();
+        return run({kind.name_, describe(), interpolation}, recipe, *kind.output_);
+      };
+    });
+  }
+
+ private:
+  std::string name_;
+  CLI::App* app_;
+  std::shared_ptr<std::string> output_ = std::make_shared<std::string>();
+  std::vector<std::function<std::string()>> recipe_;
+};
 
 void add_spectrum(CLI::App* map, Command* chosen) {
   auto spectrum = std::make_shared<SpectrumSurface>();
-  auto output = std::make_shared<std::string>();
-  CLI::App* kind = add_kind(map, "spectrum", "Random bumps: a heightfield with a Gaussian power spectrum",
-                            &spectrum->resolution, &spectrum->seed, output.get());
-  kind->add_option("--rms-slope", spectrum->rms_slope, "Root mean square slope: rise over run")
-      ->type_name("SLOPE")
-      ->capture_default_str();
-  kind->add_option("--correlation", spectrum->correlation_texels,
-                   "Distance at which the height's autocorrelation falls to 1/e: the size of the bumps")
-      ->type_name("TEXELS")
-      ->capture_default_str();
-  kind->callback([=] {
-    *chosen = [=] {
-      const std::string recipe = fmt::format(
-          "spectrum --resolution {} --rms-slope {} --correlation {} --seed {}", spectrum->resolution,
-          spectrum->rms_slope, spectrum->correlation_texels, spectrum->seed);
-      return run({"spectrum", *spectrum, Interpolation::bilinear}, recipe, *output);
-    };
-  });
+  Kind kind(map, "spectrum", "Random bumps: a heightfield with a Gaussian power spectrum");
+  kind.add_resolution_and_seed(spectrum.get());
+  kind.add("--rms-slope", &spectrum->rms_slope, "SLOPE", "Root mean square slope: rise over run");
+  kind.add("--correlation", &spectrum->correlation_texels, "TEXELS",
+           "Distance at which the height's autocorrelation falls to 1/e: the size of the bumps");
+  kind.choose(chosen, Interpolation::bilinear, [=] { return *spectrum; });
 }
 
 void add_flakes(CLI::App* map, Command* chosen) {
   auto flakes = std::make_shared<FlakesSurface>();
-  auto output = std::make_shared<std::string>();
-  CLI::App* kind =
-      add_kind(map, "flakes", "Metallic flakes: Voronoi cells, each with one Beckmann-distributed normal",
-               &flakes->resolution, &flakes->seed, output.get());
-  kind->add_option("--flake-size", flakes->flake_size_texels,
-                   "Mean distance between neighbouring flakes' centres")
-      ->type_name("TEXELS")
-      ->capture_default_str();
-  kind->add_option("--alpha", flakes->alpha, "Beckmann roughness of the flakes' normals")
-      ->type_name("ALPHA")
-      ->capture_default_str();
-  kind->footer("Read such a map with --interpolation nearest: a flake has one normal, up to its edge.");
-  kind->callback([=] {
-    *chosen = [=] {
-      const std::string recipe =
-          fmt::format("flakes --resolution {} --flake-size {} --alpha {} --seed {}", flakes->resolution,
-                      flakes->flake_size_texels, flakes->alpha, flakes->seed);
-      return run({"flakes", *flakes, Interpolation::nearest}, recipe, *output);
-    };
+  Kind kind(map, "flakes", "Metallic flakes: Voronoi cells, each with one Beckmann-distributed normal");
+  kind.add_resolution_and_seed(flakes.get());
+  kind.add("--flake-size", &flakes->flake_size_texels, "TEXELS",
+           "Mean distance between neighbouring flakes' centres");
+  kind.add("--alpha", &flakes->alpha, "ALPHA", "Beckmann roughness of the flakes' normals");
+  kind.footer("Read such a map with --interpolation nearest: a flake has one normal, up to its edge.");
+  kind.choose(chosen, Interpolation::nearest, [=] { return *flakes; });
+}
+
+void add_brushed(CLI::App* map, Command* chosen) {
+  auto brushed = std::make_shared<BrushedSurface>();
+  Kind kind(map, "brushed", "Brushed metal: a Gaussian heightfield, stretched along the brushing");
+  kind.add_resolution_and_seed(brushed.get());
+  kind.add("--rms-slope", &brushed->rms_slope, "SLOPE", "Root mean square slope: rise over run");
+  kind.add("--correlation-along", &brushed->correlation_along_texels, "TEXELS",
+           "Distance at which the height's autocorrelation falls to 1/e, along the brushing");
+  kind.add("--correlation-across", &brushed->correlation_across_texels, "TEXELS", "The same across it");
+  kind.add("--direction", &brushed->direction_degrees, "DEGREES", "Of the brushing, from u towards v");
+  kind.choose(chosen, Interpolation::bilinear, [=] { return *brushed; });
+}
+
+void add_scratches(CLI::App* map, Command* chosen) {
+  auto scratches = std::make_shared<ScratchesSurface>();
+  auto profile = std::make_shared<std::string>("rounded");
+  Kind kind(map, "scratches", "Random scratches in a flat surface");
+  kind.add_resolution_and_seed(scratches.get());
+  kind.add("--density", &scratches->density, "SHARE",
+           "Length times width of all scratches, over the map's area");
+  kind.add("--length", &scratches->length_texels, "TEXELS", "Mean length");
+  kind.add("--width", &scratches->width_texels, "TEXELS", "Mean width");
+  kind.add("--depth", &scratches->depth_texels, "TEXELS", "Mean of the deepest point");
+  kind.add("--variation", &scratches->variation, "SHARE",
+           "Length, width and depth vary, each for itself, by up to this share");
+  kind.add("--direction", &scratches->direction_degrees, "DEGREES", "Mean direction, from u towards v");
+  kind.add("--spread", &scratches->spread_degrees, "DEGREES",
+           "Directions are uniform up to this far from the mean; 90: all directions");
+  kind.add("--bend", &scratches->bend, "SHARE",
+           "Scratches bulge up to this far from straight, over their length");
+  kind.add("--profile", profile.get(), "NAME", "v, or rounded, which has a raised rim")
+      ->check(CLI::IsMember({"v", "rounded"}));
+  kind.choose(chosen, Interpolation::bilinear, [=] {
+    scratches->profile = *profile == "v" ? ScratchProfile::v : ScratchProfile::rounded;
+    return *scratches;
   });
+}
+
+void add_dents(CLI::App* map, Command* chosen) {
+  auto dents = std::make_shared<DentsSurface>();
+  Kind kind(map, "dents", "Smooth round dents at random places");
+  kind.add_resolution_and_seed(dents.get());
+  kind.add("--density", &dents->density, "SHARE", "Area of all dents, over the map's");
+  kind.add("--radius-low", &dents->radius_low_texels, "TEXELS", "Least radius");
+  kind.add("--radius-high", &dents->radius_high_texels, "TEXELS", "Greatest radius");
+  kind.add("--depth", &dents->depth, "SHARE", "Of a dent, over its radius");
+  kind.choose(chosen, Interpolation::bilinear, [=] { return *dents; });
+}
+
+void add_bumps(CLI::App* map, Command* chosen) {
+  auto bumps = std::make_shared<BumpsSurface>();
+  Kind kind(map, "bumps", "Bumpy plastic: caps of ellipsoids on a jittered grid");
+  kind.add_resolution_and_seed(bumps.get());
+  kind.add("--cell", &bumps->cell_texels, "TEXELS", "Side of the grid's cells");
+  kind.add("--size", &bumps->size, "SHARE", "Length of a bump, over the cell's side");
+  kind.add("--aspect", &bumps->aspect, "RATIO", "Length of a bump, over its width");
+  kind.add("--slope", &bumps->slope, "SLOPE", "The steepest of a bump, at its rim");
+  kind.add("--jitter", &bumps->jitter, "SHARE", "Centres are uniform over this share of their cell's sides");
+  kind.choose(chosen, Interpolation::bilinear, [=] { return *bumps; });
+}
+
+void add_waves(CLI::App* map, Command* chosen) {
+  auto waves = std::make_shared<WavesSurface>();
+  Kind kind(map, "waves", "Wind sea in deep water, at one moment");
+  kind.add_resolution_and_seed(waves.get());
+  kind.add("--patch", &waves->patch_meters, "METRES", "Side of the map");
+  kind.add("--wind-speed", &waves->wind_speed, "M/S", "Metres a second, 19.5 m above the sea");
+  kind.add("--wind-direction", &waves->wind_direction_degrees, "DEGREES",
+           "That the waves run in, from u towards v");
+  kind.add("--time", &waves->time_seconds, "SECONDS", "The moment");
+  kind.choose(chosen, Interpolation::bilinear, [=] { return *waves; });
+}
+
+LayersSurface layers_of_files(const std::vector<std::string>& paths, std::vector<double> weights) {
+  if (weights.empty()) weights.assign(paths.size(), 1.0);
+  if (weights.size() != paths.size()) {
+    throw UsageError(fmt::format("--weight: found {}, expected none or as many as layers ({})",
+                                 weights.size(), paths.size()));
+  }
+  LayersSurface layers;
+  for (std::size_t n = 0; n < paths.size(); ++n) {
+    MapFile file;
+    file.path = paths[n];
+    layers.layers.push_back({{paths[n], file, Interpolation::bilinear}, weights[n]});
+  }
+  return layers;
+}
+
+void add_layers(CLI::App* map, Command* chosen) {
+  auto paths = std::make_shared<std::vector<std::string>>();
+  auto weights = std::make_shared<std::vector<double>>();
+  Kind kind(map, "layers", "Sum of the slopes of other maps of one size");
+  kind.add("--layer", paths.get(), "FILE", "A normal map; given as often as there are layers")
+      ->required()
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  kind.add("--weight", weights.get(), "FACTOR",
+           "Of the slopes of the layer in the same place; default: 1 of each")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  kind.choose(chosen, Interpolation::bilinear, [=] { return layers_of_files(*paths, *weights); });
 }
 
 }  // namespace
@@ -93,8 +207,10 @@ void add_flakes(CLI::App* map, Command* chosen) {
 void add_map(CLI::App& app, Command* chosen) {
   CLI::App* map = app.add_subcommand("map", "Synthesises a normal map");
   map->require_subcommand(1);
-  add_spectrum(map, chosen);
-  add_flakes(map, chosen);
+  for (const auto add :
+       {add_spectrum, add_flakes, add_brushed, add_scratches, add_dents, add_bumps, add_waves, add_layers}) {
+    add(map, chosen);
+  }
 }
 
 }  // namespace mica::app

@@ -23,9 +23,9 @@ struct TestSurface {
   Surface surface;
 };
 
-Surface synthesised(std::variant<MapFile, SpectrumSurface, FlakesSurface> source,
-                    Interpolation interpolation) {
-  return make_surface({"selftest", std::move(source), interpolation}, nullptr);
+template <typename Kind>
+Surface synthesised(const Kind& source, Interpolation interpolation) {
+  return make_surface({"selftest", source, interpolation}, nullptr);
 }
 
 /// s rises by `rise` across the map, t is constant.

@@ -19,11 +19,13 @@ MapSize size_of(const MapFile& file) {
                       static_cast<std::int64_t>(spec.format.size()));
   return {spec.width, spec.height};
 }
-MapSize size_of(const SpectrumSurface& spectrum) {
-  return {spectrum.resolution, spectrum.resolution};
+MapSize size_of(const LayersSurface& layers) {
+  return map_size(layers.layers.at(0).surface);
 }
-MapSize size_of(const FlakesSurface& flakes) {
-  return {flakes.resolution, flakes.resolution};
+/// Every other kind is square.
+template <typename Synthesised>
+MapSize size_of(const Synthesised& surface) {
+  return {surface.resolution, surface.resolution};
 }
 
 }  // namespace

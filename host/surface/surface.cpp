@@ -27,6 +27,30 @@ class SurfaceMaker {
     return square(flakes.resolution, synthesise_flakes(flakes, report_).texel_normals());
   }
 
+  Surface operator()(const BrushedSurface& brushed) const {
+    return square(brushed.resolution, synthesise_brushed(brushed, report_));
+  }
+
+  Surface operator()(const ScratchesSurface& scratches) const {
+    return square(scratches.resolution, synthesise_scratches(scratches, report_));
+  }
+
+  Surface operator()(const DentsSurface& dents) const {
+    return square(dents.resolution, synthesise_dents(dents, report_));
+  }
+
+  Surface operator()(const BumpsSurface& bumps) const {
+    return square(bumps.resolution, synthesise_bumps(bumps, report_));
+  }
+
+  Surface operator()(const WavesSurface& waves) const {
+    return square(waves.resolution, synthesise_waves(waves, report_));
+  }
+
+  Surface operator()(const LayersSurface& layers) const {
+    return synthesise_layers(layers, interpolation_, report_);
+  }
+
  private:
   Surface square(int resolution, std::vector<Eigen::Vector2d> normals) const {
     return Surface(resolution, resolution, interpolation_, std::move(normals));

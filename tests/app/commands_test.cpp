@@ -81,6 +81,39 @@ TEST_F(Commands, MapMakesWhatTheLibraryMakes) {
   EXPECT_NE(bytes(path("flakes.exr")), bytes(path("other.exr")));
 }
 
+TEST_F(Commands, MapMakesEveryKind) {
+  const auto make = [&](const std::string& options, const SurfaceDescription& expected) {
+    succeed("map " + options + " -o made.exr");
+    write_map("expected.exr", make_surface(expected, nullptr));
+    EXPECT_EQ(read_rgb(path("made.exr")).pixels, read_rgb(path("expected.exr")).pixels) << options;
+  };
+  constexpr Interpolation bilinear = Interpolation::bilinear;
+  make(
+      "brushed --resolution 64 --rms-slope 0.3 --correlation-along 30 --correlation-across 4 --direction 20 "
+      "--seed 7",
+      {"", BrushedSurface{64, 0.3, 30, 4, 20, 7}, bilinear});
+  make(
+      "scratches --resolution 64 --density 1 --length 40 --width 6 --depth 1 --variation 0.2 --direction 10 "
+      "--spread 30 --bend 0.1 --profile v --seed 7",
+      {"", ScratchesSurface{64, 1, 40, 6, 1, 0.2, 10, 30, 0.1, ScratchProfile::v, 7}, bilinear});
+  make("dents --resolution 64 --density 1 --radius-low 5 --radius-high 9 --depth 0.2 --seed 7",
+       {"", DentsSurface{64, 1, 5, 9, 0.2, 7}, bilinear});
+  make("bumps --resolution 64 --cell 16 --size 1 --aspect 2 --slope 0.5 --jitter 0.3 --seed 7",
+       {"", BumpsSurface{64, 16, 1, 2, 0.5, 0.3, 7}, bilinear});
+  make("waves --resolution 64 --patch 100 --wind-speed 5 --wind-direction 40 --time 2.5 --seed 7",
+       {"", WavesSurface{64, 100, 5, 40, 2.5, 7}, bilinear});
+}
+
+TEST_F(Commands, MapAddsLayers) {
+  succeed("map spectrum --resolution 32 --rms-slope 0.2 --correlation 4 --seed 1 -o bumps.exr");
+  succeed("map layers --layer bumps.exr --weight 0.25 --layer bumps.exr --weight 0.75 -o sum.exr");
+  const Image sum = read_rgb(path("sum.exr")), bumps = read_rgb(path("bumps.exr"));
+  for (std::size_t n = 0; n < sum.pixels.size(); ++n) ASSERT_NEAR(sum.pixels[n], bumps.pixels[n], 1e-6);
+  const Outcome outcome = mica("map layers --layer bumps.exr --layer bumps.exr --weight 1 -o no.exr");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.err.find("--weight"), std::string::npos) << outcome.err;
+}
+
 TEST_F(Commands, DevicesAreListed) {
   const Outcome outcome = mica("devices --json devices.json");
   EXPECT_EQ(outcome.code, 0) << outcome.err;
@@ -111,7 +144,7 @@ TEST_F(Commands, SelftestPassesHere) {
 
 TEST_F(Commands, HelpIsData) {
   for (const char* const command :
-       {"", "eval", "ndf", "map", "map spectrum", "map flakes", "devices", "selftest"}) {
+       {"", "eval", "ndf", "map", "map spectrum", "map flakes", "map layers", "devices", "selftest"}) {
     const Outcome outcome = mica(std::string(command) + " --help");
     EXPECT_EQ(outcome.code, 0) << command;
     EXPECT_NE(outcome.out.find("Usage"), std::string::npos) << command;

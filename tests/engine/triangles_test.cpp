@@ -18,9 +18,9 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kOracleTolerance = 1e-7;  // a thousandth of what is tested
 
-Surface synthesised(std::variant<MapFile, SpectrumSurface, FlakesSurface> source,
-                    Interpolation interpolation) {
-  return make_surface({"test", std::move(source), interpolation}, nullptr);
+template <typename Kind>
+Surface synthesised(const Kind& source, Interpolation interpolation) {
+  return make_surface({"test", source, interpolation}, nullptr);
 }
 Surface spectrum(Interpolation interpolation) {
   return synthesised(SpectrumSurface{256, 0.15, 8, 3}, interpolation);

@@ -115,8 +115,8 @@ const std::vector<Mistake> out_of_range = {
      "camera.up.1: found -inf (a float); expected a number in [-1000000, 1000000]"},
     {"", "[audit]\nsamples = @-1", "audit.samples: found -1; expected an integer in [0, 1000000]"},
     {"", "seed = @-1", "seed: found -1; expected an integer from 0 below 2^63"},
-    {"\"spectrum\"", "\"spectrum\"\nresolution = @1000",
-     "surface.bumps.resolution: found 1000; expected a power of two"},
+    {"\"spectrum\"", "\"spectrum\"\nresolution = @3",
+     "surface.bumps.resolution: found 3; expected an integer in [4, 16384]"},
     {"\"spectrum\"", "\"spectrum\"\nresolution = 64\ncorrelation = @65",
      "surface.bumps.correlation: found 65; expected a number in (0, 64]"},
     {"\"spectrum\"", "\"flakes\"\nresolution = 100\nflake_size = @26",
@@ -133,11 +133,48 @@ const std::vector<Mistake> out_of_range = {
     {"4]", "4]\nintensity = [1, 1, @-1]",
      "light.0.intensity.2: found -1; expected a number in [0, 1000000000]"},
 };
+
+/// Mistakes in kinds of surfaces; \"bumps\" of the least job becomes that kind.
+const std::vector<Mistake> surface_mistakes = {
+    {"\"spectrum\"", "\"brushed\"\nresolution = 64\ncorrelation_across = @65",
+     "surface.bumps.correlation_across: found 65; expected a number in [0.001, 64]"},
+    {"\"spectrum\"", "\"scratches\"\nlength = 10\nwidth = @11",
+     "surface.bumps.width: found 11; expected a number in [1, 10]"},
+    {"\"spectrum\"", "\"scratches\"\nprofile = @\"w\"",
+     "surface.bumps.profile: found \"w\" (a string); expected one of: v, rounded (did you mean \"v\"?)"},
+    {"\"spectrum\"", "\"dents\"\nradius = @[9, 3]",
+     "surface.bumps.radius: found 9 before 3; expected the least before the greatest"},
+    {"\"spectrum\"", "\"bumps\"\naspect = @0", "surface.bumps.aspect: found 0; expected a number in [1, 10]"},
+    {"\"spectrum\"", "\"waves\"\nwind_speed = @0",
+     "surface.bumps.wind_speed: found 0; expected a number in [1e-06, 100]"},
+    {"[surface.bumps]\ngenerate = \"spectrum\"",
+     "[surface.a]\ngenerate = \"dents\"\n[surface.bumps]\ngenerate = \"layers\"\nlayers = [{ surface = "
+     "@\"b\" }]",
+     "surface.bumps.layers.0.surface: found \"b\"; expected the name of a surface, one of: a, bumps (did you "
+     "mean \"a\"?)"},
+    {"\"spectrum\"", "\"layers\"\nlayers = [{ surface = @\"bumps\" }]",
+     "surface.bumps.layers.0.surface: found \"bumps\", which is made of layers itself; expected a surface "
+     "that is "
+     "not"},
+    {"[surface.bumps]\ngenerate = \"spectrum\"",
+     "[surface.a]\ngenerate = \"dents\"\nresolution = 64\n[surface.b]\ngenerate = \"dents\"\nresolution = "
+     "32\n[surface.bumps]\ngenerate = \"layers\"\nlayers = [{ surface = \"a\" }, { surface = @\"b\" }]",
+     "surface.bumps.layers.1.surface: found a resolution of 32; expected 64, as of the layers before it"},
+    {"\"spectrum\"", "\"layers\"\nlayers = @[]",
+     "surface.bumps.layers: found no [[layers]]; expected at least one"},
+    {"\"spectrum\"", "\"layers\"\nlayers = [@{ weight = 2 }]",
+     "surface.bumps.layers.0: found no key \"surface\"; expected the name of a surface that is not made of "
+     "layers"},
+};
+INSTANTIATE_TEST_SUITE_P(Surfaces, Errors, testing::ValuesIn(surface_mistakes));
+
 INSTANTIATE_TEST_SUITE_P(OutOfRange, Errors, testing::ValuesIn(out_of_range));
 
 const std::vector<Mistake> wrong_words = {
     {"\"spectrum\"", "@\"spectrun\"",
-     "surface.bumps.generate: found \"spectrun\" (a string); expected one of: spectrum, flakes (did you mean "
+     "surface.bumps.generate: found \"spectrun\" (a string); expected one of: spectrum, flakes, brushed, "
+     "scratches, "
+     "dents, bumps, waves, layers (did you mean "
      "\"spectrum\"?)"},
     {"\"spectrum\"", "\"spectrum\"\ninterpolation = @\"cubic\"",
      "surface.bumps.interpolation: found \"cubic\" (a string); expected one of: nearest, bilinear, bicubic "

@@ -1,5 +1,6 @@
 #include <xxhash.h>
 
+#include "host/surface/surface.h"
 #include "tests/job/job_text.h"
 
 namespace mica::test {
@@ -217,6 +218,127 @@ TEST(Values, AbsentKeysKeepTheirDefaults) {
   EXPECT_EQ(job.scene.materials[0].roughness, MaterialDescription().roughness);
   EXPECT_EQ(std::get<SpectrumSurface>(job.surfaces[0].source).rms_slope, SpectrumSurface().rms_slope);
   EXPECT_EQ(std::get<SphereShape>(job.scene.shapes[0].geometry).radius, SphereShape().radius);
+}
+
+TEST(Values, KindsOfSurfaces) {
+  const JobFolder folder;
+  const Job job = folder.load(R"(
+[surface.a]
+generate = "brushed"
+resolution = 100
+rms_slope = 0.3
+correlation_along = 50
+correlation_across = 5
+direction = -30
+seed = 2
+[surface.b]
+generate = "scratches"
+resolution = 100
+density = 0.7
+length = 60
+width = 5
+depth = 0.4
+variation = 0.2
+direction = 10
+spread = 20
+bend = 0.1
+profile = "v"
+seed = 3
+[surface.c]
+generate = "dents"
+resolution = 100
+density = 0.8
+radius = [3, 9]
+depth = 0.2
+seed = 4
+[surface.d]
+generate = "bumps"
+resolution = 100
+cell = 10
+size = 0.6
+aspect = 2
+slope = 0.5
+jitter = 0.1
+seed = 5
+[surface.e]
+generate = "waves"
+resolution = 100
+patch = 300
+wind_speed = 7
+wind_direction = 45
+time = 1.5
+seed = 6
+)" + least_job);
+  const auto& brushed = std::get<BrushedSurface>(job.surfaces[0].source);
+  EXPECT_EQ(brushed.resolution, 100);
+  EXPECT_EQ(brushed.rms_slope, 0.3);
+  EXPECT_EQ(brushed.correlation_along_texels, 50);
+  EXPECT_EQ(brushed.correlation_across_texels, 5);
+  EXPECT_EQ(brushed.direction_degrees, -30);
+  EXPECT_EQ(brushed.seed, 2u);
+  const auto& scratches = std::get<ScratchesSurface>(job.surfaces[1].source);
+  EXPECT_EQ(scratches.resolution, 100);
+  EXPECT_EQ(scratches.density, 0.7);
+  EXPECT_EQ(scratches.length_texels, 60);
+  EXPECT_EQ(scratches.width_texels, 5);
+  EXPECT_EQ(scratches.depth_texels, 0.4);
+  EXPECT_EQ(scratches.variation, 0.2);
+  EXPECT_EQ(scratches.direction_degrees, 10);
+  EXPECT_EQ(scratches.spread_degrees, 20);
+  EXPECT_EQ(scratches.bend, 0.1);
+  EXPECT_EQ(scratches.profile, ScratchProfile::v);
+  EXPECT_EQ(scratches.seed, 3u);
+  const auto& dents = std::get<DentsSurface>(job.surfaces[3].source);
+  EXPECT_EQ(job.surfaces[2].name, "bumps");  // of the least job: in the order of names
+  EXPECT_EQ(dents.resolution, 100);
+  EXPECT_EQ(dents.density, 0.8);
+  EXPECT_EQ(dents.radius_low_texels, 3);
+  EXPECT_EQ(dents.radius_high_texels, 9);
+  EXPECT_EQ(dents.depth, 0.2);
+  EXPECT_EQ(dents.seed, 4u);
+  const auto& bumps = std::get<BumpsSurface>(job.surfaces[4].source);
+  EXPECT_EQ(bumps.resolution, 100);
+  EXPECT_EQ(bumps.cell_texels, 10);
+  EXPECT_EQ(bumps.size, 0.6);
+  EXPECT_EQ(bumps.aspect, 2);
+  EXPECT_EQ(bumps.slope, 0.5);
+  EXPECT_EQ(bumps.jitter, 0.1);
+  EXPECT_EQ(bumps.seed, 5u);
+  const auto& waves = std::get<WavesSurface>(job.surfaces[5].source);
+  EXPECT_EQ(waves.resolution, 100);
+  EXPECT_EQ(waves.patch_meters, 300);
+  EXPECT_EQ(waves.wind_speed, 7);
+  EXPECT_EQ(waves.wind_direction_degrees, 45);
+  EXPECT_EQ(waves.time_seconds, 1.5);
+  EXPECT_EQ(waves.seed, 6u);
+}
+
+TEST(Values, LayersHoldTheSurfacesThatTheyName) {
+  const JobFolder folder;
+  const Job job = folder.load(R"(
+[surface.a]
+generate = "layers"
+layers = [{ surface = "z", weight = 0.5 }, { surface = "bumps" }]
+interpolation = "bicubic"
+[surface.z]
+generate = "dents"
+)" + least_job,
+                              {"surface.z.depth=0.3"});
+  const auto& layers = std::get<LayersSurface>(job.surfaces[0].source).layers;
+  ASSERT_EQ(layers.size(), 2u);
+  EXPECT_EQ(std::get<DentsSurface>(layers[0].surface.source).depth, 0.3);
+  EXPECT_EQ(layers[0].weight, 0.5);
+  EXPECT_TRUE(std::holds_alternative<SpectrumSurface>(layers[1].surface.source));
+  EXPECT_EQ(layers[1].weight, 1);
+  EXPECT_EQ(job.surfaces[0].interpolation, Interpolation::bicubic);
+}
+
+TEST(Values, DefaultLengthsFitSmallMaps) {
+  const JobFolder folder;
+  for (const std::string kind : {"spectrum", "brushed", "scratches", "dents", "bumps", "waves"}) {
+    const Job job = folder.load(replaced(least_job, "\"spectrum\"", '"' + kind + "\"\nresolution = 16"));
+    EXPECT_NO_THROW(make_surface(job.surfaces[0], nullptr)) << kind;
+  }
 }
 
 TEST(Values, InlineTablesMeanTheSame) {
