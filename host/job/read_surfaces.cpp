@@ -81,6 +81,7 @@ SurfaceDescription read_scratches(TableReader& surface) {
   surface.read("length", scratches.length_texels, closed(2, scratches.resolution));
   limit(scratches.width_texels, scratches.length_texels);
   surface.read("width", scratches.width_texels, closed(1, scratches.length_texels));
+  limit(scratches.depth_texels, scratches.width_texels);
   surface.read("depth", scratches.depth_texels, closed(0, scratches.width_texels));
   surface.read("variation", scratches.variation, closed(0, 0.9));
   surface.read("direction", scratches.direction_degrees, directions);

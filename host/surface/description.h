@@ -58,8 +58,8 @@ struct ScratchesSurface {
   int resolution = 2048;       ///< texels a side, 4..16384
   double density = 0.3;        ///< sum of length times width over the map's area, 0..4
   double length_texels = 400;  ///< mean, 2..resolution
-  double width_texels = 4;     ///< mean, 1..length
-  double depth_texels = 0.3;   ///< mean of the deepest point, 0..width
+  double width_texels = 8;     ///< mean, 1..length
+  double depth_texels = 0.6;   ///< mean of the deepest point, 0..width
   double variation = 0.5;      ///< length, width and depth vary, each for itself, by up to this share; 0..0.9
   double direction_degrees = 0;  ///< mean, from +u towards +v; -360..360
   double spread_degrees = 90;    ///< directions are uniform up to this far from the mean; 0..90

@@ -22,6 +22,8 @@ enum Stream : std::uint64_t {
   bend_stream
 };
 
+constexpr double kResolvedWidth = 4;  // texels; narrower, and a slanting groove falls apart into dots
+
 void check(const ScratchesSurface& scratches) {
   const auto check = [](const char* setting, double value, double low, double high) {
     synthesis::check_setting("scratches", setting, value, low, high);
@@ -97,6 +99,12 @@ std::vector<Eigen::Vector2d> synthesise_scratches(const ScratchesSurface& scratc
   const std::vector<Scratch> placed = place_scratches(scratches);
   report.notes.push_back(fmt::format("scratches: {} scratches on {} x {} texels", placed.size(),
                                      scratches.resolution, scratches.resolution));
+  const double narrowest = scratches.width_texels * (1 - scratches.variation);
+  if (narrowest < kResolvedWidth) {
+    report.warnings.push_back(
+        fmt::format("scratches: widths from {} texels on are finer than the grid resolves; expected {} or more",
+                    narrowest, kResolvedWidth));
+  }
   return synthesis::normals_of_features(scratches.resolution, placed);
 }
 

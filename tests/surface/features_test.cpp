@@ -218,6 +218,16 @@ TEST(Features, AreFlatWithoutHeightAndDifferByTheSeed) {
   EXPECT_NE(slopes(other), slopes(dents()));
 }
 
+TEST(Scratches, WarnWhenTheGridDoesNotResolveThem) {
+  SurfaceReport report;
+  synthesise_scratches(scratches(), report);
+  EXPECT_TRUE(report.warnings.empty());
+  ScratchesSurface narrow = scratches();
+  narrow.width_texels = 7.9;
+  synthesise_scratches(narrow, report);
+  EXPECT_EQ(report.warnings.size(), 1u);
+}
+
 TEST(Features, RefuseSettingsOutOfRange) {
   const double nan = std::nan("");
   ScratchesSurface scratch = scratches();
