@@ -4,73 +4,33 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <chrono>
-#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "bench/coherent.h"
 #include "bench/fma_peak.h"
 #include "bench/paper_recursion.h"
 #include "host/base/error.h"
+#include "host/base/stopwatch.h"
 #include "host/engine/triangle_evaluator.h"
 #include "host/reference/oracle.h"
 
 namespace mica::bench {
 namespace {
 
-constexpr int kSide = 256;  // queries a side of the block of neighbouring footprints
 constexpr int kRepeats = 11;
-
-/// Neighbouring footprints, one standard deviation apart, and a half vector that turns slowly: a highlight's
-/// edge.
-std::vector<Query> coherent_queries(const Surface& surface, double sigma_texels) {
-  std::vector<Query> queries(kSide * kSide);
-  const double sigma_uv = sigma_texels / surface.width();
-  for (int n = 0; n < kSide * kSide; ++n) {
-    const int x = n % kSide, y = n / kSide;
-    queries[n].footprint.mean_uv = {0.3 + x * sigma_uv, 0.4 + y * sigma_uv};
-    queries[n].footprint.cov_uv = Eigen::Matrix2d::Identity() * sigma_uv * sigma_uv;
-    queries[n].half_vector = {0.15 * x / kSide, 0.05 - 0.1 * y / kSide};
-    queries[n].roughness = 0.005;
-  }
-  return queries;
-}
-
-/// Every `stride`-th query: what slow evaluators are timed on.
-std::vector<Query> thinned(const std::vector<Query>& queries, std::size_t stride) {
-  std::vector<Query> some;
-  for (std::size_t n = 0; n < queries.size(); n += stride) some.push_back(queries[n]);
-  return some;
-}
-
-struct Timing {
-  double median_seconds, lowest, highest;
-};
 
 template <typename Work>
 Timing time_repeats(Work work) {
   work();  // warm-up
   std::vector<double> seconds;
   for (int repeat = 0; repeat < kRepeats; ++repeat) {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     work();
-    seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    seconds.push_back(watch.seconds());
   }
-  std::sort(seconds.begin(), seconds.end());
-  return {seconds[seconds.size() / 2], seconds.front(), seconds.back()};
-}
-
-/// sqrt(sum (D - ref)^2 / sum ref^2) over a thinned set.
-double relative_l2(const std::vector<float>& densities,
-                   const std::vector<reference::OracleResult>& references) {
-  double squares = 0, reference_squares = 0;
-  for (std::size_t n = 0; n < references.size(); ++n) {
-    squares += std::pow(densities[n] - references[n].density, 2);
-    reference_squares += std::pow(references[n].density, 2);
-  }
-  return std::sqrt(squares / reference_squares);
+  return timing_of(seconds);
 }
 
 int run(const char* json_path) {

@@ -25,6 +25,16 @@
   OFFSET(mica_map_query, inverse_roughness) \
   OFFSET(mica_map_query, scale)             \
   OFFSET(mica_map_query, cutoff)            \
-  OFFSET(mica_map_query, slot)
+  OFFSET(mica_map_query, slot)              \
+  SIZE(mica_mixture_query)                  \
+  OFFSET(mica_mixture_query, map)           \
+  OFFSET(mica_mixture_query, axis_1x)       \
+  OFFSET(mica_mixture_query, axis_1y)       \
+  OFFSET(mica_mixture_query, axis_2x)       \
+  OFFSET(mica_mixture_query, axis_2y)       \
+  OFFSET(mica_mixture_query, blur_1)        \
+  OFFSET(mica_mixture_query, blur_2)        \
+  OFFSET(mica_mixture_query, spread_variance) \
+  OFFSET(mica_mixture_query, kernel_variance)
 
 #endif  // MICA_STRUCT_LAYOUT_H

@@ -78,6 +78,18 @@ static inline void take_quads(global const mica_map_query* query, private const 
 #include "texel_quads.h"
 #endif
 
+typedef struct {
+  wave_list list;
+  integrator out;
+} leaf_results;
+
+#define LEAF_TAKE(query, normals, at, i, j, room_i, room_j, gathered, scratch) \
+  take_leaf(query, normals, at, i, j, room_i, room_j, &(gathered)->list, &(gathered)->out, scratch)
+#define LEAF_SURVIVORS surviving_children
+#define LEAF_QUERY mica_map_query
+#define LEAF_NODE_STRIDE MICA_NODE_STRIDE
+#include "walk_leaves.h"
+
 // Density of every query, in the order of their slots. Global size: queries (vectors), or 16 a query (items).
 kernel void triangles(global const mica_map_query* restrict queries, int query_count, mica_map_grid grid,
                       global const int* restrict normals, global const short* restrict block_nodes,
@@ -87,41 +99,11 @@ kernel void triangles(global const mica_map_query* restrict queries, int query_c
   WAVE_SHARED float quad_records[QUAD_FIELDS * WAVE_LIST];
   if (WAVE_ITEM_INDEX >= query_count) return;
   global const mica_map_query* query = queries + WAVE_ITEM_INDEX;
-  wave_list list = {quad_records, 0};
-  integrator out = {{0.0f, 0.0f}, {short_records, 0}, {long_records, 0}};
-
-  // Quad (i, j) spans [i, i + 1] in the coordinates of the mean.
-  const int first_i = (int)floor(query->mean_x - query->extent_x), last_i = (int)floor(query->mean_x + query->extent_x);
-  const int first_j = (int)floor(query->mean_y - query->extent_y), last_j = (int)floor(query->mean_y + query->extent_y);
-  const int first_x = block_of(query->mean_i + first_i, grid.width, grid.blocks_x);
-  const int last_x = block_of(query->mean_i + last_i, grid.width, grid.blocks_x);
-  const int first_y = block_of(query->mean_j + first_j, grid.height, grid.blocks_y);
-  const int last_y = block_of(query->mean_j + last_j, grid.height, grid.blocks_y);
-  for (int block_y = first_y; block_y <= last_y; ++block_y) {
-    for (int block_x = first_x; block_x <= last_x; ++block_x) {
-      const map_block block = locate_block(grid, query, block_x, block_y);
-      const int map_room_i = grid.width - (block.index % grid.blocks_x) * MICA_BLOCK;
-      const int map_room_j = grid.height - (block.index / grid.blocks_x) * MICA_BLOCK;
-      const int first_texel = block.index * MICA_BLOCK_STRIDE + MICA_BLOCK_ROW + 1;
-      uint tiles = surviving_children(query, block_nodes + block.index * MICA_NODE_STRIDE, block.i, block.j,
-                                      MICA_TILE, scratch);
-      for (; tiles; tiles &= tiles - 1) {
-        const int tile = lowest_bit(tiles);
-        const int tile_i = (tile & 3) * MICA_TILE, tile_j = (tile >> 2) * MICA_TILE;
-        uint leaves = surviving_children(query, tile_nodes + (block.index * 16 + tile) * MICA_NODE_STRIDE,
-                                         block.i + tile_i, block.j + tile_j, MICA_LEAF, scratch);
-        for (; leaves; leaves &= leaves - 1) {
-          const int leaf = lowest_bit(leaves);
-          const int leaf_i = tile_i + (leaf & 3) * MICA_LEAF, leaf_j = tile_j + (leaf >> 2) * MICA_LEAF;
-          take_leaf(query, normals, first_texel + leaf_j * MICA_BLOCK_ROW + leaf_i, block.i + leaf_i,
-                    block.j + leaf_j, map_room_i - leaf_i, map_room_j - leaf_j, &list, &out, scratch);
-        }
-      }
-    }
-  }
-  if (list.count) integrate_first_quads(query, &list, &out, scratch);
-  integrate_rest(&out, scratch);
-  const float sum = wave_sum(out.total.sum, scratch);
+  leaf_results gathered = {{quad_records, 0}, {{0.0f, 0.0f}, {short_records, 0}, {long_records, 0}}};
+  walk_leaves(query, grid, normals, block_nodes, tile_nodes, &gathered, scratch);
+  if (gathered.list.count) integrate_first_quads(query, &gathered.list, &gathered.out, scratch);
+  integrate_rest(&gathered.out, scratch);
+  const float sum = wave_sum(gathered.out.total.sum, scratch);
   const float area = QUAD_SIZE * QUAD_SIZE;  // of a quad: the integrals are over unit triangles
   density[query->slot] = MICA_COUNT_FLOPS ? sum : query->scale * area * sum;
 }

@@ -23,7 +23,8 @@ enum {
   MICA_NORMALS_PADDING = 8,  // ints after the last block: whole vectors are read
   MICA_TILE = 16,            // texels a side; sixteen tiles a block
   MICA_LEAF = 4,             // texels a side; sixteen leaves a tile
-  MICA_NODE_STRIDE = 64      // shorts a node: s_min[16], s_max[16], t_min[16], t_max[16]
+  MICA_NODE_STRIDE = 64,     // shorts a node: s_min[16], s_max[16], t_min[16], t_max[16]
+  MICA_MIXTURE_NODE_STRIDE = 80  // the same of the elements' means, then spread[16]
 };
 
 // Normals (s, t) are 32-bit fixed point: the difference of two is exact, and 2^-30 is fine enough for
@@ -74,7 +75,20 @@ typedef struct {
   MICA_INT slot;      // where the result goes
 } mica_map_query;
 
+// One query of a Gaussian mixture, in texel units. [Yan16]. With tau_i^2 = sigma_i^2 + k, sigma_i and a_i the footprint's
+// standard deviations and axes, k the variance of the elements' position kernel.
+typedef struct {
+  mica_map_query map;               // its whitening and extent are for culling: of a footprint that is wide enough
+  MICA_FLOAT axis_1x, axis_1y;      // a_1 / tau_1: whitens an element's centre
+  MICA_FLOAT axis_2x, axis_2y;      // a_2 / tau_2
+  MICA_FLOAT blur_1, blur_2;        // sqrt(k) sigma_i / sigma_r: times J a_i / tau_i, what the slice's normals spread by
+  MICA_FLOAT spread_variance;       // what a squared `spread` of a node counts for, in roughnesses squared
+  MICA_FLOAT kernel_variance;       // k
+} mica_mixture_query;
+
 #ifdef __cplusplus
+static_assert(sizeof(mica_mixture_query) == 96 && offsetof(mica_mixture_query, axis_1x) == 64 &&
+              offsetof(mica_mixture_query, kernel_variance) == 92);
 static_assert(sizeof(mica_map_grid) == 16 && offsetof(mica_map_grid, blocks_x) == 8);
 static_assert(sizeof(mica_map_query) == 64 && offsetof(mica_map_query, whiten_1x) == 16 &&
               offsetof(mica_map_query, half_s) == 40 && offsetof(mica_map_query, slot) == 60);

@@ -74,6 +74,9 @@ void check_tolerance(const std::string& name, std::optional<double> tolerance) {
     if (!(*tolerance >= kMinOracleTolerance && *tolerance <= kMaxOracleTolerance))
       throw UsageError(fmt::format("--tolerance {}: reference takes {} to {}", *tolerance,
                                    kMinOracleTolerance, kMaxOracleTolerance));
+  } else if (name != "triangles") {
+    throw UsageError(fmt::format(
+        "--tolerance {}: {} promises no error; triangles and reference do", *tolerance, name));
   } else if (!(*tolerance >= kTrianglesTolerance)) {
     throw UsageError(
         fmt::format("--tolerance {}: {} keeps a relative error of {}; for less use --ndf reference",
@@ -82,7 +85,7 @@ void check_tolerance(const std::string& name, std::optional<double> tolerance) {
 }
 
 OpenEvaluator open_evaluator(const std::string& name, std::optional<double> tolerance, int device_index,
-                             const Surface& surface) {
+                             const Surface& surface, int elements) {
   check_tolerance(name, tolerance);
   OpenEvaluator open;
   if (name == "reference") {
@@ -90,7 +93,7 @@ OpenEvaluator open_evaluator(const std::string& name, std::optional<double> tole
         surface, tolerance.value_or(reference::Oracle::default_tolerance));
   } else {
     open.device = std::make_unique<Device>(device_index);
-    open.evaluator = make_evaluator(name, *open.device, surface);
+    open.evaluator = make_evaluator(name, *open.device, surface, elements);
   }
   return open;
 }

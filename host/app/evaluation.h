@@ -26,9 +26,10 @@ struct OpenEvaluator {
 /// @param tolerance relative error asked for, none: the evaluator's own.
 /// @param device_index as `mica devices` prints it.
 /// @param surface has to outlive the evaluator.
+/// @param elements of a mixture, a texel and axis.
 /// Throws DeviceError, and UsageError for a tolerance that the evaluator cannot keep.
 OpenEvaluator open_evaluator(const std::string& name, std::optional<double> tolerance, int device_index,
-                             const Surface& surface);
+                             const Surface& surface, int elements);
 
 /// `grid`, which needs no surface.
 OpenEvaluator open_grid(const GlintGrid& grid, int device_index);

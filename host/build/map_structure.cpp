@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "host/build/normal_box.h"
+
 namespace mica {
 namespace {
 
@@ -14,53 +16,18 @@ using namespace device_types;
 constexpr int kApronBefore = 1;  // texels stored left of and below a block
 constexpr int kChildren = 16;
 
-/// Smallest box around fixed-point normals; empty until something is added.
-struct Box {
-  std::int64_t s_min = INT64_MAX, s_max = INT64_MIN, t_min = INT64_MAX, t_max = INT64_MIN;
-
-  bool empty() const { return s_min > s_max; }
-  void add(std::int64_t s, std::int64_t t) {
-    s_min = std::min(s_min, s), s_max = std::max(s_max, s);
-    t_min = std::min(t_min, t), t_max = std::max(t_max, t);
-  }
-  void add(const Box& other) {
-    if (other.empty()) return;
-    add(other.s_min, other.t_min);
-    add(other.s_max, other.t_max);
-  }
-};
-
 /// Bicubic values between texels exceed them. The absolute Catmull-Rom weights sum to at most 25/16, so a
 /// value differs from the middle of its sixteen control points by at most 25/16 of half their range.
-Box catmull_rom_bound(const Box& control) {
+NormalBox catmull_rom_bound(const NormalBox& control) {
   const auto widen = [](std::int64_t low, std::int64_t high, std::int64_t* wide_low,
                         std::int64_t* wide_high) {
     const std::int64_t extra = (high - low) * 9 / 32 + 1;
     *wide_low = low - extra, *wide_high = high + extra;
   };
-  Box box;
+  NormalBox box;
   widen(control.s_min, control.s_max, &box.s_min, &box.s_max);
   widen(control.t_min, control.t_max, &box.t_min, &box.t_max);
   return box;
-}
-
-void store(const Box& box, int child, std::int16_t* node) {
-  if (box.empty()) {
-    node[child] = node[child + 32] = INT16_MAX;
-    node[child + 16] = node[child + 48] = INT16_MIN;
-    return;
-  }
-  static_assert(MICA_NORMAL_ONE == 1 << 30);
-  const auto floor16 = [](std::int64_t n) {
-    return static_cast<std::int16_t>(
-        std::clamp<std::int64_t>((n * MICA_BOUND_ONE) >> 30, INT16_MIN, INT16_MAX));
-  };
-  const auto ceil16 = [](std::int64_t n) {
-    return static_cast<std::int16_t>(
-        std::clamp<std::int64_t>(-((-n * MICA_BOUND_ONE) >> 30), INT16_MIN, INT16_MAX));
-  };
-  node[child] = floor16(box.s_min), node[child + 16] = ceil16(box.s_max);
-  node[child + 32] = floor16(box.t_min), node[child + 48] = ceil16(box.t_max);
 }
 
 /// One block: its normals with their apron, then bounds from the quads up.
@@ -84,10 +51,10 @@ class BlockBuilder {
 
   void bound(std::int16_t* block_node, std::int16_t* tile_nodes) const {
     for (int tile = 0; tile < kChildren; ++tile) {
-      Box tile_box;
+      NormalBox tile_box;
       for (int leaf = 0; leaf < kChildren; ++leaf) {
-        const Box leaf_box = bound_leaf((tile & 3) * MICA_TILE + (leaf & 3) * MICA_LEAF,
-                                        (tile >> 2) * MICA_TILE + (leaf >> 2) * MICA_LEAF);
+        const NormalBox leaf_box = bound_leaf((tile & 3) * MICA_TILE + (leaf & 3) * MICA_LEAF,
+                                              (tile >> 2) * MICA_TILE + (leaf >> 2) * MICA_LEAF);
         store(leaf_box, leaf, tile_nodes + tile * MICA_NODE_STRIDE);
         tile_box.add(leaf_box);
       }
@@ -96,14 +63,14 @@ class BlockBuilder {
   }
 
  private:
-  Box bound_leaf(int first_i, int first_j) const {
-    Box box;
+  NormalBox bound_leaf(int first_i, int first_j) const {
+    NormalBox box;
     for (int j = first_j; j < std::min(first_j + MICA_LEAF, room_j_); ++j)
       for (int i = first_i; i < std::min(first_i + MICA_LEAF, room_i_); ++i) box.add(bound_quad(i, j));
     return box;
   }
 
-  Box bound_quad(int i, int j) const {
+  NormalBox bound_quad(int i, int j) const {
     switch (interpolation_) {
       case Interpolation::nearest:
         return texels(i, j, 0, 0);
@@ -115,8 +82,8 @@ class BlockBuilder {
     return {};
   }
 
-  Box texels(int i, int j, int from, int to) const {
-    Box box;
+  NormalBox texels(int i, int j, int from, int to) const {
+    NormalBox box;
     for (int y = j + from; y <= j + to; ++y) {
       for (int x = i + from; x <= i + to; ++x) {
         const int at = (y + kApronBefore) * MICA_BLOCK_ROW + x + kApronBefore;

@@ -4,17 +4,22 @@
 #include <fmt/ranges.h>
 
 #include "host/base/error.h"
+#include "host/engine/mixture_evaluator.h"
 #include "host/engine/triangle_evaluator.h"
 
 namespace mica {
 
 const std::vector<std::string>& evaluator_names() {
-  static const std::vector<std::string> names = {"triangles"};
+  static const std::vector<std::string> names = {"triangles", "gaussians"};
   return names;
 }
 
-std::unique_ptr<Evaluator> make_evaluator(const std::string& name, Device& device, const Surface& surface) {
+std::unique_ptr<Evaluator> make_evaluator(const std::string& name, Device& device, const Surface& surface,
+                                          int elements) {
   if (name == "triangles") return std::make_unique<TriangleEvaluator>(device, surface);
+  MixtureSettings mixture;
+  mixture.elements = elements;
+  if (name == "gaussians") return std::make_unique<GaussianEvaluator>(device, surface, mixture);
   throw UsageError(
       fmt::format("there is no evaluator \"{}\"; available: {}", name, fmt::join(evaluator_names(), ", ")));
 }

@@ -14,7 +14,10 @@ namespace mica {
 const std::vector<std::string>& evaluator_names();
 
 /// The evaluator of that name on `surface`. `device` must outlive it; the surface need not.
-/// Throws UsageError for a name that does not exist.
-std::unique_ptr<Evaluator> make_evaluator(const std::string& name, Device& device, const Surface& surface);
+/// @param elements of a mixture, a texel and axis; other evaluators do not mind it.
+/// Throws UsageError for a name that does not exist, and for a surface or number of elements that it does not
+/// take.
+std::unique_ptr<Evaluator> make_evaluator(const std::string& name, Device& device, const Surface& surface,
+                                          int elements = 1);
 
 }  // namespace mica

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "host/build/mixture.h"
+
 namespace mica {
 namespace {
 
@@ -110,6 +112,73 @@ device_types::mica_map_query to_map_query(const Query& query, const device_types
   result.cutoff = static_cast<float>(cutoff);
   result.scale = static_cast<float>(1 / (4 * kPi * kPi * axes.sigma_major_texels * axes.sigma_minor_texels *
                                          query.roughness * query.roughness));
+  return result;
+}
+
+namespace {
+
+/// What the position kernels' weights under a footprint sum to, by Poisson's summation of
+/// sum_n h^2 N(h (n + 1/2) - rest; cov): 1 where the kernels and the footprint are wide, 6% an axis off where
+/// they are not.
+/// @param cov_spacings of footprint and kernel together, in spacings^2.
+double sum_of_weights(const Eigen::Matrix2d& cov_spacings, const Eigen::Vector2d& mean_spacings) {
+  constexpr int orders = 2;  // the third one's terms are below exp(-2 pi^2 9 k) = 1e-14
+  double sum = 0;
+  for (int a = -orders; a <= orders; ++a) {
+    for (int b = -orders; b <= orders; ++b) {
+      const Eigen::Vector2d wave(a, b);
+      const double exponent = 2 * kPi * kPi * wave.dot(cov_spacings * wave);
+      if (exponent < 40)
+        sum += std::exp(-exponent) * std::cos(2 * kPi * wave.dot(Eigen::Vector2d(0.5, 0.5) - mean_spacings));
+    }
+  }
+  return sum;
+}
+
+}  // namespace
+
+device_types::mica_mixture_query to_mixture_query(const Query& query, const device_types::mica_map_grid& grid,
+                                                  Interpolation interpolation, int elements, double cutoff) {
+  device_types::mica_mixture_query result{};
+  result.map = to_map_query(query, grid, interpolation, cutoff);
+  const FootprintAxes axes =
+      footprint_axes(without_needless_periods(query.footprint), grid.width, grid.height);
+  const double spacing = 1.0 / elements;
+  const double k = kPositionKernelVariance * spacing * spacing;
+  const double sigma_1 = axes.sigma_major_texels, sigma_2 = axes.sigma_minor_texels;
+  const double tau_1 = std::sqrt(sigma_1 * sigma_1 + k), tau_2 = std::sqrt(sigma_2 * sigma_2 + k);
+  const Eigen::Vector2d row_1 = axes.major / tau_1, row_2 = axes.minor / tau_2;
+  result.axis_1x = static_cast<float>(row_1.x()), result.axis_1y = static_cast<float>(row_1.y());
+  result.axis_2x = static_cast<float>(row_2.x()), result.axis_2y = static_cast<float>(row_2.y());
+  result.blur_1 = static_cast<float>(std::sqrt(k) * sigma_1 / query.roughness);
+  result.blur_2 = static_cast<float>(std::sqrt(k) * sigma_2 / query.roughness);
+  result.kernel_variance = static_cast<float>(k);
+
+  // An element's exponent is the least, over u, of |u - m|^2 / F + |u - c|^2 / k + |s - s0 - J (u - c)|^2 /
+  // sigma_r^2. With a share of the middle term for each of the others, it is at least a bound on the position
+  // plus one on the normal.
+  const double share = std::sqrt(k) / (std::sqrt(k) + sigma_2);  // of the position
+  const double widening = k / share;
+  const Eigen::Matrix2d wide = sigma_1 * sigma_1 * axes.major * axes.major.transpose() +
+                               sigma_2 * sigma_2 * axes.minor * axes.minor.transpose() +
+                               widening * Eigen::Matrix2d::Identity();
+  const Eigen::Vector2d wide_1 = axes.major / std::sqrt(sigma_1 * sigma_1 + widening),
+                        wide_2 = axes.minor / std::sqrt(sigma_2 * sigma_2 + widening);
+  result.map.whiten_1x = static_cast<float>(wide_1.x()),
+  result.map.whiten_1y = static_cast<float>(wide_1.y());
+  result.map.whiten_2x = static_cast<float>(wide_2.x()),
+  result.map.whiten_2y = static_cast<float>(wide_2.y());
+  result.map.extent_x = static_cast<float>(std::sqrt(cutoff * wide(0, 0)));
+  result.map.extent_y = static_cast<float>(std::sqrt(cutoff * wide(1, 1)));
+  const double spread_unit = 1.0 / (MICA_BOUND_ONE * query.roughness);
+  result.spread_variance = static_cast<float>(spread_unit * spread_unit / (1 - share));
+
+  const Eigen::Matrix2d cov_spacings = (tau_1 * tau_1 * axes.major * axes.major.transpose() +
+                                        tau_2 * tau_2 * axes.minor * axes.minor.transpose()) /
+                                       (spacing * spacing);
+  const Eigen::Vector2d mean_spacings = Eigen::Vector2d(result.map.mean_x, result.map.mean_y) / spacing;
+  result.map.scale = static_cast<float>(spacing * spacing / sum_of_weights(cov_spacings, mean_spacings) /
+                                        (4 * kPi * kPi * tau_1 * tau_2 * query.roughness * query.roughness));
   return result;
 }
 

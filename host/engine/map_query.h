@@ -27,6 +27,13 @@ FootprintAxes footprint_axes(const Footprint& footprint, int map_width, int map_
 device_types::mica_map_query to_map_query(const Query& query, const device_types::mica_map_grid& grid,
                                           Interpolation interpolation, double cutoff);
 
+/// The query of a mixture whose elements lie `1 / elements` texels apart. The weights of the elements under
+/// the footprint are normalised: they sum to one, as those of the published position kernel do not. [Che18]
+/// sec. 4.1.
+/// @param interpolation nearest or bilinear.
+device_types::mica_mixture_query to_mixture_query(const Query& query, const device_types::mica_map_grid& grid,
+                                                  Interpolation interpolation, int elements, double cutoff);
+
 /// Cutoff that leaves out less than `relative_error` of the density's peak.
 double cutoff_for(double relative_error);
 

@@ -4,6 +4,7 @@
 
 #include "host/device/device.h"
 #include "host/engine/evaluator.h"
+#include "host/engine/map_batches.h"
 #include "host/surface/surface.h"
 #include "kernels/types.h"
 
@@ -20,8 +21,6 @@ struct TriangleSettings {
   std::optional<WaveForm> wave_form;  ///< default: what suits the device
 };
 
-class TriangleDensities;
-
 /// `triangles`: the triangulated map, integrated exactly. [Yan14] Eq. 6; kernels/triangles.cl.
 class TriangleEvaluator : public Evaluator {
  public:
@@ -30,25 +29,14 @@ class TriangleEvaluator : public Evaluator {
 
   std::unique_ptr<PendingDensities> start(const std::vector<Query>& queries) override;
   std::string name() const override { return "triangles"; }
-  std::size_t device_bytes() const override { return device_bytes_; }
-
+  std::size_t device_bytes() const override { return batches_->device_bytes(); }
   double build_seconds() const override { return build_seconds_; }
-  double device_seconds() const override { return *device_seconds_; }
-  std::size_t batch_queries() const { return batch_queries_; }
+  double device_seconds() const override { return batches_->device_seconds(); }
 
  private:
-  void enqueue(std::size_t first, TriangleDensities* pending);
-
-  Device& device_;
   Interpolation interpolation_;
-  WaveForm wave_form_;
-  device_types::mica_map_grid grid_{};
-  double cutoff_;
-  std::size_t batch_queries_, device_bytes_;
-  double build_seconds_;
-  std::shared_ptr<double> device_seconds_ = std::make_shared<double>(0.0);  // shared with pending densities
-  cl::Buffer normals_, block_nodes_, tile_nodes_;
-  cl::Kernel kernel_;
+  double cutoff_, build_seconds_ = 0;
+  std::optional<MapBatches<device_types::mica_map_query>> batches_;
 };
 
 }  // namespace mica

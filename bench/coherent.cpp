@@ -1,0 +1,47 @@
+#include "bench/coherent.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mica::bench {
+namespace {
+
+constexpr int kSide = 256;  // queries a side of the block of neighbouring footprints
+
+}  // namespace
+
+std::vector<Query> coherent_queries(const Surface& surface, double sigma_texels) {
+  std::vector<Query> queries(kSide * kSide);
+  const double sigma_uv = sigma_texels / surface.width();
+  for (int n = 0; n < kSide * kSide; ++n) {
+    const int x = n % kSide, y = n / kSide;
+    queries[n].footprint.mean_uv = {0.3 + x * sigma_uv, 0.4 + y * sigma_uv};
+    queries[n].footprint.cov_uv = Eigen::Matrix2d::Identity() * sigma_uv * sigma_uv;
+    queries[n].half_vector = {0.15 * x / kSide, 0.05 - 0.1 * y / kSide};
+    queries[n].roughness = 0.005;
+  }
+  return queries;
+}
+
+std::vector<Query> thinned(const std::vector<Query>& queries, std::size_t stride) {
+  std::vector<Query> some;
+  for (std::size_t n = 0; n < queries.size(); n += stride) some.push_back(queries[n]);
+  return some;
+}
+
+Timing timing_of(std::vector<double> seconds) {
+  std::sort(seconds.begin(), seconds.end());
+  return {seconds[seconds.size() / 2], seconds.front(), seconds.back()};
+}
+
+double relative_l2(const std::vector<float>& densities,
+                   const std::vector<reference::OracleResult>& references) {
+  double squares = 0, reference_squares = 0;
+  for (std::size_t n = 0; n < references.size(); ++n) {
+    squares += std::pow(densities[n] - references[n].density, 2);
+    reference_squares += std::pow(references[n].density, 2);
+  }
+  return std::sqrt(squares / reference_squares);
+}
+
+}  // namespace mica::bench

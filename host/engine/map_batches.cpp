@@ -1,0 +1,171 @@
+#include "host/engine/map_batches.h"
+
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace mica {
+namespace {
+
+using device_types::mica_map_query;
+using device_types::mica_mixture_query;
+
+constexpr std::size_t kWaveLanes = 16;
+constexpr std::size_t kCpuGroup = 16;  // queries a work-group on a CPU
+
+std::uint64_t spread_bits(std::uint32_t x) {
+  std::uint64_t v = x & 0xffffu;
+  v = (v | (v << 8)) & 0x00ff00ffu;
+  v = (v | (v << 4)) & 0x0f0f0f0fu;
+  v = (v | (v << 2)) & 0x33333333u;
+  return (v | (v << 1)) & 0x55555555u;
+}
+
+mica_map_query& place_of(mica_map_query& query) {
+  return query;
+}
+mica_map_query& place_of(mica_mixture_query& query) {
+  return query.map;
+}
+
+/// Sorts by the Morton code of the tile under the mean: neighbours in a batch then read the same texels.
+template <typename DeviceQuery>
+void sort_by_footprint(std::vector<DeviceQuery>* queries) {
+  struct Key {
+    std::uint64_t code;
+    std::uint32_t index;
+  };
+  std::vector<Key> keys(queries->size());
+  tbb::parallel_for(std::size_t{0}, keys.size(), [&](std::size_t n) {
+    const mica_map_query& q = place_of((*queries)[n]);
+    const std::uint64_t morton = spread_bits(q.mean_i / device_types::MICA_TILE) |
+                                 (spread_bits(q.mean_j / device_types::MICA_TILE) << 1);
+    keys[n] = {morton, static_cast<std::uint32_t>(n)};
+  });
+  tbb::parallel_sort(keys, [](const Key& a, const Key& b) {
+    return a.code != b.code ? a.code < b.code : a.index < b.index;
+  });
+  std::vector<DeviceQuery> sorted(keys.size());
+  tbb::parallel_for(std::size_t{0}, keys.size(),
+                    [&](std::size_t n) { sorted[n] = (*queries)[keys[n].index]; });
+  queries->swap(sorted);
+}
+
+double seconds_of(const cl::Event& event) {
+  return 1e-9 * static_cast<double>(event.getProfilingInfo<CL_PROFILING_COMMAND_END>() -
+                                    event.getProfilingInfo<CL_PROFILING_COMMAND_START>());
+}
+
+std::size_t round_up(std::size_t n, std::size_t multiple) {
+  return (n + multiple - 1) / multiple * multiple;
+}
+
+}  // namespace
+
+/// Queries on the device, in the order in which they run, and what it takes to put the answers back into
+/// theirs.
+template <typename DeviceQuery>
+class MapBatches<DeviceQuery>::Densities : public PendingDensities {
+ public:
+  // The device may still be reading and writing our memory when an error unwinds.
+  ~Densities() override {
+    for (const cl::Event& event : done) clWaitForEvents(1, &event());
+  }
+
+  std::vector<float> wait() override {
+    try {
+      if (!done.empty()) cl::Event::waitForEvents(done);
+      for (const cl::Event& kernel : kernels) *device_seconds += seconds_of(kernel);
+    } catch (const cl::Error& error) {
+      throw opencl_error(error, "evaluating " + method);
+    }
+    // A density is finite and not negative: rounding may leave -0 or a denormal, never more.
+    std::vector<float> ordered(queries.size());
+    for (std::size_t n = 0; n < queries.size(); ++n) {
+      if (!std::isfinite(results[n])) throw DeviceError("evaluating " + method + ": a density is not finite");
+      ordered[order[n]] = std::max(results[n], 0.0f);
+    }
+    return ordered;
+  }
+
+  std::string method;
+  std::vector<DeviceQuery> queries;  // alive until the device has read them
+  std::vector<std::uint32_t> order;  // of the query at each place
+  std::vector<float> results;
+  std::vector<cl::Event> kernels, done;
+  std::shared_ptr<double> device_seconds;
+};
+
+template <typename DeviceQuery>
+MapBatches<DeviceQuery>::MapBatches(Device& device, const MapStructure& map, const std::string& method,
+                                    const std::string& options, WaveForm wave_form, std::size_t batch_queries)
+    : device_(device),
+      method_(method),
+      wave_form_(wave_form),
+      grid_(map.grid),
+      batch_queries_(
+          std::clamp<std::size_t>(batch_queries, 1, device.info().allocation_bytes / sizeof(DeviceQuery))),
+      device_bytes_(map.bytes()),
+      normals_(device.upload(map.normals, "the map's normals")),
+      block_nodes_(device.upload(map.block_nodes, "the map's bounds")),
+      tile_nodes_(device.upload(map.tile_nodes, "the map's bounds")),
+      kernel_(device.kernel(method + ".cl", method, options, wave_form)) {}
+
+template <typename DeviceQuery>
+std::unique_ptr<PendingDensities> MapBatches<DeviceQuery>::start(std::vector<DeviceQuery> queries) {
+  auto pending = std::make_unique<Densities>();
+  for (std::size_t n = 0; n < queries.size(); ++n) place_of(queries[n]).slot = static_cast<std::int32_t>(n);
+  sort_by_footprint(&queries);
+  pending->method = method_;
+  pending->queries = std::move(queries);
+  pending->device_seconds = device_seconds_;
+  const std::size_t count = pending->queries.size();
+  pending->order.resize(count);
+  pending->results.resize(count);
+  for (std::size_t n = 0; n < count; ++n) {
+    std::int32_t& slot = place_of(pending->queries[n]).slot;
+    pending->order[n] = static_cast<std::uint32_t>(slot);
+    slot = static_cast<std::int32_t>(n % batch_queries_);
+  }
+  for (std::size_t first = 0; first < count; first += batch_queries_) enqueue(first, pending.get());
+  return pending;
+}
+
+template <typename DeviceQuery>
+void MapBatches<DeviceQuery>::enqueue(std::size_t first, Densities* pending) {
+  const std::vector<DeviceQuery>& queries = pending->queries;
+  const std::size_t count = std::min(batch_queries_, queries.size() - first);
+  const cl::Buffer input =
+      device_.buffer(count * sizeof(DeviceQuery), CL_MEM_READ_ONLY, "a batch of queries");
+  const cl::Buffer output = device_.buffer(count * sizeof(float), CL_MEM_WRITE_ONLY, "a batch of densities");
+  try {
+    device_.queue().enqueueWriteBuffer(input, CL_FALSE, 0, count * sizeof(DeviceQuery),
+                                       queries.data() + first);
+    kernel_.setArg(0, input);
+    kernel_.setArg(1, static_cast<cl_int>(count));
+    kernel_.setArg(2, sizeof grid_, &grid_);
+    kernel_.setArg(3, normals_);
+    kernel_.setArg(4, block_nodes_);
+    kernel_.setArg(5, tile_nodes_);
+    kernel_.setArg(6, output);
+    const bool vectors = wave_form_ == WaveForm::vectors;
+    const std::size_t global = vectors ? round_up(count, kCpuGroup) : count * kWaveLanes;
+    const std::size_t local = vectors ? kCpuGroup : kWaveLanes;
+    cl::Event kernel_done, read_done;
+    device_.queue().enqueueNDRangeKernel(kernel_, cl::NullRange, global, local, nullptr, &kernel_done);
+    device_.queue().enqueueReadBuffer(output, CL_FALSE, 0, count * sizeof(float),
+                                      pending->results.data() + first, nullptr, &read_done);
+    pending->kernels.push_back(kernel_done);
+    pending->done.push_back(read_done);
+    device_.queue().flush();
+  } catch (const cl::Error& error) {
+    throw opencl_error(error, "running " + method_);
+  }
+}
+
+template class MapBatches<mica_map_query>;
+template class MapBatches<mica_mixture_query>;
+
+}  // namespace mica

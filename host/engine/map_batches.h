@@ -1,0 +1,51 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "host/build/map_structure.h"
+#include "host/device/device.h"
+#include "host/engine/evaluator.h"
+#include "kernels/types.h"
+
+namespace mica {
+
+/// What every kernel on a map's structure needs to run: its buffers on the device, and queries fed in
+/// batches, sorted by where their footprints lie.
+/// @tparam DeviceQuery mica_map_query, or a struct that begins with one as `map`.
+template <typename DeviceQuery>
+class MapBatches {
+ public:
+  /// Uploads `map`. `device` must outlive this.
+  /// @param method kernel file and function: "triangles" of triangles.cl.
+  /// @param options compiler options.
+  /// @param batch_queries queries a launch, at most; less where the device's memory asks for it.
+  MapBatches(Device& device, const MapStructure& map, const std::string& method, const std::string& options,
+             WaveForm wave_form, std::size_t batch_queries);
+
+  /// Sends queries, in any order and with any slot.
+  std::unique_ptr<PendingDensities> start(std::vector<DeviceQuery> queries);
+
+  const device_types::mica_map_grid& grid() const { return grid_; }
+  std::size_t device_bytes() const { return device_bytes_; }
+  double device_seconds() const { return *device_seconds_; }
+
+ private:
+  class Densities;
+  void enqueue(std::size_t first, Densities* pending);
+
+  Device& device_;
+  std::string method_;
+  WaveForm wave_form_;
+  device_types::mica_map_grid grid_;
+  std::size_t batch_queries_, device_bytes_;
+  std::shared_ptr<double> device_seconds_ = std::make_shared<double>(0.0);  // shared with pending densities
+  cl::Buffer normals_, block_nodes_, tile_nodes_;
+  cl::Kernel kernel_;
+};
+
+extern template class MapBatches<device_types::mica_map_query>;
+extern template class MapBatches<device_types::mica_mixture_query>;
+
+}  // namespace mica

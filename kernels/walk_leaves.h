@@ -1,0 +1,51 @@
+// Included by a method's kernel: the way from the blocks under a footprint down to the leaves that matter to it, sixteen
+// children at a time. The kernel says what its queries and nodes are, and what to do with a leaf:
+//   LEAF_QUERY                the query's struct, with LEAF_PLACE(query) its mica_map_query (default: itself);
+//   LEAF_NODE_STRIDE          shorts a node;
+//   LEAF_SURVIVORS(query, node, i, j, child_size, scratch)   bits of the children that matter;
+//   leaf_results, LEAF_TAKE(query, normals, at, i, j, room_i, room_j, results, scratch)   what a leaf adds to.
+#ifndef MICA_WALK_LEAVES_H
+#define MICA_WALK_LEAVES_H
+
+#include "map_cull.h"
+
+#ifndef LEAF_PLACE
+#define LEAF_PLACE(query) (query)
+#endif
+
+static inline void walk_leaves(global const LEAF_QUERY* query, mica_map_grid grid, global const int* normals,
+                               global const short* block_nodes, global const short* tile_nodes,
+                               private leaf_results* results, WAVE_SHARED int* scratch) {
+  global const mica_map_query* place = LEAF_PLACE(query);
+  // Quad (i, j) spans [i, i + 1] in the coordinates of the mean.
+  const int first_i = (int)floor(place->mean_x - place->extent_x), last_i = (int)floor(place->mean_x + place->extent_x);
+  const int first_j = (int)floor(place->mean_y - place->extent_y), last_j = (int)floor(place->mean_y + place->extent_y);
+  const int first_x = block_of(place->mean_i + first_i, grid.width, grid.blocks_x);
+  const int last_x = block_of(place->mean_i + last_i, grid.width, grid.blocks_x);
+  const int first_y = block_of(place->mean_j + first_j, grid.height, grid.blocks_y);
+  const int last_y = block_of(place->mean_j + last_j, grid.height, grid.blocks_y);
+  for (int block_y = first_y; block_y <= last_y; ++block_y) {
+    for (int block_x = first_x; block_x <= last_x; ++block_x) {
+      const map_block block = locate_block(grid, place, block_x, block_y);
+      const int map_room_i = grid.width - (block.index % grid.blocks_x) * MICA_BLOCK;
+      const int map_room_j = grid.height - (block.index / grid.blocks_x) * MICA_BLOCK;
+      const int first_texel = block.index * MICA_BLOCK_STRIDE + MICA_BLOCK_ROW + 1;
+      uint tiles = LEAF_SURVIVORS(query, block_nodes + block.index * LEAF_NODE_STRIDE, block.i, block.j, MICA_TILE,
+                                  scratch);
+      for (; tiles; tiles &= tiles - 1) {
+        const int tile = lowest_bit(tiles);
+        const int tile_i = (tile & 3) * MICA_TILE, tile_j = (tile >> 2) * MICA_TILE;
+        uint leaves = LEAF_SURVIVORS(query, tile_nodes + (block.index * 16 + tile) * LEAF_NODE_STRIDE,
+                                     block.i + tile_i, block.j + tile_j, MICA_LEAF, scratch);
+        for (; leaves; leaves &= leaves - 1) {
+          const int leaf = lowest_bit(leaves);
+          const int leaf_i = tile_i + (leaf & 3) * MICA_LEAF, leaf_j = tile_j + (leaf >> 2) * MICA_LEAF;
+          LEAF_TAKE(query, normals, first_texel + leaf_j * MICA_BLOCK_ROW + leaf_i, block.i + leaf_i,
+                    block.j + leaf_j, map_room_i - leaf_i, map_room_j - leaf_j, results, scratch);
+        }
+      }
+    }
+  }
+}
+
+#endif  // MICA_WALK_LEAVES_H
