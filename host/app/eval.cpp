@@ -27,7 +27,7 @@ struct EvalOptions {
   GridOptions grid;
   std::string quantity = "ndf", ndf, queries, output, json;
   std::optional<double> roughness, tolerance;
-  int device = 0;
+  int device = 0, elements = 1;
 };
 
 struct PhaseTimes {
@@ -115,9 +115,9 @@ int run(const EvalOptions& options) {
                            : query_problem(query, subject.surface->width(), subject.surface->height());
   });
   times.load = lap(&start);
-  const OpenEvaluator open =
-      subject.is_grid ? open_grid(subject.grid, options.device)
-                      : open_evaluator(options.ndf, options.tolerance, options.device, *subject.surface);
+  const OpenEvaluator open = subject.is_grid ? open_grid(subject.grid, options.device)
+                                             : open_evaluator(options.ndf, options.tolerance, options.device,
+                                                              *subject.surface, options.elements);
   times.build = lap(&start);
   const std::vector<float> densities =
       evaluate_all(open.evaluator.get(), table.size(), [&](std::size_t row) { return table.query(row); });
@@ -182,6 +182,12 @@ void add_eval(CLI::App& app, Command* chosen) {
       ->add_option("--json", options->json,
                    "Writes what was done: map, device, bytes, seconds, queries a second")
       ->type_name("FILE");
+  command
+      ->add_option("--elements", options->elements,
+                   "Elements of a mixture a texel and axis: more are slower and closer to the map")
+      ->type_name("N")
+      ->check(CLI::Range(1, 4))
+      ->capture_default_str();
   command->add_option("--device", options->device, "OpenCL device, by its number in `mica devices`")
       ->type_name("N")
       ->capture_default_str();

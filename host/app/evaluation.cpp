@@ -75,8 +75,8 @@ void check_tolerance(const std::string& name, std::optional<double> tolerance) {
       throw UsageError(fmt::format("--tolerance {}: reference takes {} to {}", *tolerance,
                                    kMinOracleTolerance, kMaxOracleTolerance));
   } else if (name != "triangles") {
-    throw UsageError(fmt::format(
-        "--tolerance {}: {} promises no error; triangles and reference do", *tolerance, name));
+    throw UsageError(
+        fmt::format("--tolerance {}: {} promises no error; triangles and reference do", *tolerance, name));
   } else if (!(*tolerance >= kTrianglesTolerance)) {
     throw UsageError(
         fmt::format("--tolerance {}: {} keeps a relative error of {}; for less use --ndf reference",

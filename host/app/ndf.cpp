@@ -25,7 +25,7 @@ struct NdfOptions {
   std::string ndf, output;
   std::vector<double> center_uv, sigma, window = {0, 0, 1};
   double roughness = 0;
-  int size = 512, device = 0;
+  int size = 512, device = 0, elements = 1;
 };
 
 /// The footprint with standard deviations `sigma` = (a) or (a, b, degrees from +u to the axis of a), texels.
@@ -100,7 +100,7 @@ Image evaluate(const NdfOptions& options, const Surface& surface) {
   const std::string problem = query_problem(query, surface.width(), surface.height());
   if (!problem.empty()) throw UsageError(problem);
 
-  const OpenEvaluator open = open_evaluator(options.ndf, {}, options.device, surface);
+  const OpenEvaluator open = open_evaluator(options.ndf, {}, options.device, surface, options.elements);
   const std::vector<float> densities = evaluate_all(open.evaluator.get(), pixels.size(), [&](std::size_t n) {
     query.half_vector = window.half_vector(pixels[n]);
     return query;
@@ -188,6 +188,12 @@ void add_ndf(CLI::App& app, Command* chosen) {
   command->add_option("-o,--output", options->output, "The image, .exr or .png")
       ->required()
       ->type_name("FILE");
+  command
+      ->add_option("--elements", options->elements,
+                   "Elements of a mixture a texel and axis: more are slower and closer to the map")
+      ->type_name("N")
+      ->check(CLI::Range(1, 4))
+      ->capture_default_str();
   command->add_option("--device", options->device, "OpenCL device, by its number in `mica devices`")
       ->type_name("N")
       ->capture_default_str();

@@ -98,8 +98,8 @@ std::vector<Check> check_gaussians(Device* device) {
         const double peak = *std::max_element(expected.begin(), expected.end());
         check.points += queries.size();
         for (std::size_t n = 0; n < queries.size(); ++n)
-          check.worst = std::max(check.worst, std::abs(densities[n] - expected[n]) /
-                                                  (1e-4 * expected[n] + 2e-5 * peak));
+          check.worst = std::max(check.worst,
+                                 std::abs(densities[n] - expected[n]) / (1e-4 * expected[n] + 2e-5 * peak));
       }
       checks.push_back(check);
     }

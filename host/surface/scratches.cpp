@@ -101,9 +101,9 @@ std::vector<Eigen::Vector2d> synthesise_scratches(const ScratchesSurface& scratc
                                      scratches.resolution, scratches.resolution));
   const double narrowest = scratches.width_texels * (1 - scratches.variation);
   if (narrowest < kResolvedWidth) {
-    report.warnings.push_back(
-        fmt::format("scratches: widths from {} texels on are finer than the grid resolves; expected {} or more",
-                    narrowest, kResolvedWidth));
+    report.warnings.push_back(fmt::format(
+        "scratches: widths from {} texels on are finer than the grid resolves; expected {} or more",
+        narrowest, kResolvedWidth));
   }
   return synthesis::normals_of_features(scratches.resolution, placed);
 }
