@@ -50,7 +50,8 @@ std::vector<Bump> place_bumps(const BumpsSurface& bumps) {
     const auto unit = [&](Stream stream) {
       return synthesis::random_unit(bumps.seed, stream, static_cast<std::uint64_t>(n));
     };
-    const Eigen::Vector2d middle(static_cast<double>(n % cells) + 0.5, static_cast<double>(n / cells) + 0.5);
+    const long column = n % cells, row = n / cells;
+    const Eigen::Vector2d middle(static_cast<double>(column) + 0.5, static_cast<double>(row) + 0.5);
     const double angle = 2 * synthesis::kPi * unit(angle_stream);
     Bump bump;
     bump.center_texels =
