@@ -1,10 +1,10 @@
 // mica bench: speed against error, side by side in one run.
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include "host/app/commands.h"
 #include "host/app/interrupt.h"
 #include "host/app/output.h"
+#include "host/base/stopwatch.h"
 #include "host/bench/suite.h"
 #include "host/image/image.h"
 #include "host/report/bench_report.h"
@@ -22,9 +22,10 @@ int run(const Options& options) {
   for (const std::string& path : {options.json, options.html})
     if (!path.empty()) prepare_output(path);
   Device device(options.device);
+  const Stopwatch watch;
   const bench::Results results = bench::run_suite(options.suite, device, [&](const std::string& what) {
     check_interrupt();
-    if (!options.quiet) fmt::print(stderr, "{}\n", what);
+    if (!options.quiet) fmt::print(stderr, "{:6.1f} s  {}\n", watch.seconds(), what);
   });
   fmt::print("{}", bench_summary(results));
   if (!options.json.empty()) write_file_atomically(options.json, bench_json(results));

@@ -16,9 +16,9 @@
 namespace mica::bench {
 namespace {
 
-constexpr int kResolution = 1024, kSubpixels = 2, kRepeats = 5;
+constexpr int kResolution = 512, kSubpixels = 2, kRepeats = 3;
 constexpr double kOracleTolerance = 1e-5;
-constexpr double kMostSampleSeconds = 4;  // that a picture by brute force may take
+constexpr double kMostSampleSeconds = 2;  // that a picture by brute force may take
 
 /// The middle of data/jobs/shell.toml, closer.
 SceneDescription shell_scene() {
@@ -26,7 +26,7 @@ SceneDescription shell_scene() {
   scene.camera.position = {0, -3.2, 1.4}, scene.camera.look_at = {0.05, 0, 0.42},
   scene.camera.fov_degrees = 9;
   MaterialDescription material;
-  material.name = "shell", material.surface = "nacre", material.repeat = {16, 16}, material.roughness = 0.01;
+  material.name = "shell", material.surface = "nacre", material.repeat = {12, 12}, material.roughness = 0.01;
   material.specular = ConductorFresnel{};
   material.diffuse = {0.1, 0.085, 0.07};
   scene.materials = {material};
