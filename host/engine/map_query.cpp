@@ -19,7 +19,12 @@ double difference_of_products(double a, double b, double c, double d) {
   return std::fma(a, b, -cd) + std::fma(-c, d, cd);
 }
 
-/// Whole texels in [0, size) and the rest in [0, 1) of a texture coordinate less `shift` texels.
+std::int32_t to_fixed(double normal) {
+  return static_cast<std::int32_t>(std::lround(normal * MICA_NORMAL_ONE));
+}
+
+}  // namespace
+
 void wrap_texel(double coordinate, int size, double shift, std::int32_t* whole, float* rest) {
   const double texels = (coordinate - std::floor(coordinate)) * size - shift;
   const double base = std::floor(texels);
@@ -29,9 +34,9 @@ void wrap_texel(double coordinate, int size, double shift, std::int32_t* whole, 
   *whole = (*whole % size + size) % size;
 }
 
-/// On a periodic map a footprint far wider than a period is a uniform one, and so is one of 0.8 periods: of
-/// the wrapped Gaussian's Fourier series exp(-2 pi^2 sigma^2 |k|^2) only 4 * 3e-6 is left beside the mean.
 Footprint without_needless_periods(const Footprint& footprint) {
+  // Of the wrapped Gaussian's Fourier series exp(-2 pi^2 sigma^2 |k|^2) only 4 * 3e-6 is left beside the
+  // mean.
   constexpr double uniform_variance = 0.8 * 0.8;
   const Eigen::Matrix2d& cov = footprint.cov_uv;
   const double smallest =
@@ -39,12 +44,6 @@ Footprint without_needless_periods(const Footprint& footprint) {
   if (smallest <= uniform_variance) return footprint;
   return {footprint.mean_uv, Eigen::Matrix2d::Identity() * uniform_variance};
 }
-
-std::int32_t to_fixed(double normal) {
-  return static_cast<std::int32_t>(std::lround(normal * MICA_NORMAL_ONE));
-}
-
-}  // namespace
 
 FootprintAxes footprint_axes(const Footprint& footprint, int map_width, int map_height) {
   const double w = map_width, h = map_height;
@@ -115,12 +114,6 @@ device_types::mica_map_query to_map_query(const Query& query, const device_types
   return result;
 }
 
-namespace {
-
-/// What the position kernels' weights under a footprint sum to, by Poisson's summation of
-/// sum_n h^2 N(h (n + 1/2) - rest; cov): 1 where the kernels and the footprint are wide, 6% an axis off where
-/// they are not.
-/// @param cov_spacings of footprint and kernel together, in spacings^2.
 double sum_of_weights(const Eigen::Matrix2d& cov_spacings, const Eigen::Vector2d& mean_spacings) {
   constexpr int orders = 2;  // the third one's terms are below exp(-2 pi^2 9 k) = 1e-14
   double sum = 0;
@@ -134,8 +127,6 @@ double sum_of_weights(const Eigen::Matrix2d& cov_spacings, const Eigen::Vector2d
   }
   return sum;
 }
-
-}  // namespace
 
 device_types::mica_mixture_query to_mixture_query(const Query& query, const device_types::mica_map_grid& grid,
                                                   Interpolation interpolation, int elements, double cutoff) {
