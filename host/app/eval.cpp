@@ -29,7 +29,6 @@ struct EvalOptions {
   GridOptions grid;
   std::string quantity = "ndf", ndf, queries, output, json;
   std::string masking = "exact", part = "all";
-  std::uint64_t seed = 1;
   std::optional<double> roughness, tolerance;
   int device = 0, elements = 1;
 };
@@ -107,7 +106,7 @@ QueryTable read_queries(const EvalOptions& options) {
 int run_patches(const EvalOptions& options) {
   if (options.tolerance) throw UsageError("--tolerance is for --quantity ndf");
   return evaluate_patches({options.map, options.quantity, options.ndf, options.queries, options.output,
-                           options.json, options.masking, options.part, options.roughness, options.seed,
+                           options.json, options.masking, options.part, options.roughness, options.grid.seed,
                            options.device, options.elements});
 }
 
@@ -168,7 +167,6 @@ void add_patch_options(CLI::App* command, EvalOptions* options) {
       ->type_name("NAME")
       ->check(CLI::IsMember(std::vector<std::string>{"single", "multiple", "all"}))
       ->capture_default_str();
-  command->add_option("--seed", options->seed, "Of the samples")->type_name("N")->capture_default_str();
 }
 
 }  // namespace
