@@ -29,9 +29,10 @@ BeckmannEvaluator beckmanns(const Surface& surface, int elements) {
   return BeckmannEvaluator(device(), surface, settings);
 }
 
-/// 16-bit numbers, single precision and culling may cost 3e-4 of the value and 2e-5 of the footprint's
-/// brightest.
-void expect_plain_sum(const Surface& surface, int elements, double largest) {
+/// Single precision and culling may cost 3e-4 of the value and 2e-5 of the footprint's brightest; 16-bit
+/// numbers cost what moving a lobe does, two standard deviations down its flank.
+/// @param leaf_slopes range of slopes in a leaf of 4x4 elements.
+void expect_plain_sum(const Surface& surface, int elements, double largest, double leaf_slopes) {
   BeckmannEvaluator evaluator = beckmanns(surface, elements);
   const reference::BeckmannMixture mixture(surface, elements);
   double worst = 0;
@@ -44,7 +45,8 @@ void expect_plain_sum(const Surface& surface, int elements, double largest) {
         expected.push_back(reference::BeckmannMixture::density(lobes, query.half_vector));
       const double peak = *std::max_element(expected.begin(), expected.end());
       for (std::size_t n = 0; n < queries.size(); ++n) {
-        const double allowed = 3e-4 * expected[n] + 2e-5 * peak;
+        const double quantised = 2 * 0.5 * leaf_slopes / 65534 / roughness;
+        const double allowed = (3e-4 + quantised) * expected[n] + 2e-5 * peak;
         worst = std::max(worst, std::abs(densities[n] - expected[n]) / allowed);
         EXPECT_NEAR(densities[n], expected[n], allowed)
             << "roughness " << roughness << ", half vector " << queries[n].half_vector.transpose()
@@ -56,15 +58,15 @@ void expect_plain_sum(const Surface& surface, int elements, double largest) {
 }
 
 TEST(Beckmanns, AreThePlainSumOnNoise) {
-  expect_plain_sum(mixture_spectrum(), 1, 12);
-  expect_plain_sum(mixture_spectrum(), 2, 3);
+  expect_plain_sum(mixture_spectrum(), 1, 12, 0.15);
+  expect_plain_sum(mixture_spectrum(), 2, 3, 0.15);
 }
 TEST(Beckmanns, AreThePlainSumOnBrushedMetal) {
-  expect_plain_sum(mixture_brushed(), 1, 12);
+  expect_plain_sum(mixture_brushed(), 1, 12, 0.3);
 }
 TEST(Beckmanns, AreThePlainSumOnFlakes) {
-  expect_plain_sum(mixture_flakes(Interpolation::nearest), 1, 64);
-  expect_plain_sum(mixture_flakes(Interpolation::bilinear), 1, 3);
+  expect_plain_sum(mixture_flakes(Interpolation::nearest), 1, 64, 0.8);
+  expect_plain_sum(mixture_flakes(Interpolation::bilinear), 1, 3, 0.8);
 }
 
 /// Relative L2 over half vectors under a footprint of 4 texels, against dense samples of the bilinear
