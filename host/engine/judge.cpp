@@ -1,6 +1,7 @@
 #include "host/engine/judge.h"
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -8,6 +9,7 @@
 
 #include "host/engine/accuracy.h"
 #include "host/engine/map_query.h"
+#include "host/reference/beckmann_mixture.h"
 #include "host/reference/gaussian_mixture.h"
 #include "host/reference/glint_grid.h"
 
@@ -75,6 +77,28 @@ class ApproximationJudge : public Judge {
   const reference::Oracle& oracle_;
 };
 
+/// A mixture: what it promises is to be its own sum, what it is asked for is the map.
+class MixtureJudge : public Judge {
+ public:
+  MixtureJudge(std::unique_ptr<Judge> own, const reference::Oracle& oracle)
+      : own_(std::move(own)), map_(oracle) {}
+
+  double highest(const Query& query) const override { return own_->highest(query); }
+  Verdict judge(Evaluator* evaluator, const Surface& surface,
+                std::vector<std::vector<Query>> probes) const override {
+    const Verdict own = own_->judge(evaluator, surface, probes);
+    if (own.worst > 1) return own;
+    Verdict map = map_.judge(evaluator, surface, std::move(probes));
+    if (map.worst <= 1) return own;
+    map.limitation += fmt::format("; is its own sum to {:.2g} of the bound", own.worst);
+    return map;
+  }
+
+ private:
+  std::unique_ptr<Judge> own_;
+  ApproximationJudge map_;
+};
+
 /// Far wider than a period, a footprint sees every part of the map alike: one of two periods does as well, to
 /// exp(-8 pi^2), and its plain sum ends.
 Query without_needless_periods(Query query) {
@@ -100,6 +124,69 @@ References oracle_densities(const reference::Oracle& oracle) {
     return densities;
   };
 }
+
+/// Largest range of slopes in 4 x 4 texels and one more on each side: what 16 bits of a lobe's mean span.
+double leaf_slopes(const Surface& surface) {
+  const auto slope = [&](long i, long j) {
+    const Eigen::Vector2d& s = surface.texel(i, j);
+    return Eigen::Vector2d(s / std::sqrt(1 - s.squaredNorm()));
+  };
+  double largest = 0;
+  for (long j = 0; j < surface.height(); ++j) {
+    for (long i = 0; i < surface.width(); ++i) {
+      Eigen::Vector2d low = slope(i, j), high = low;
+      for (long n = 0; n < 36; ++n) {
+        const Eigen::Vector2d other = slope(i - 1 + n % 6, j - 1 + n / 6);
+        low = low.cwiseMin(other), high = high.cwiseMax(other);
+      }
+      largest = std::max(largest, (high - low).maxCoeff());
+    }
+  }
+  return largest;
+}
+
+/// `beckmanns` promises to be its own sum, but for what 16-bit slopes cost: half a unit, as far down a lobe's
+/// flank as it is summed.
+class BeckmannJudge : public Judge {
+ public:
+  explicit BeckmannJudge(const Surface& surface) : mixture_(surface, 1), leaf_slopes_(leaf_slopes(surface)) {}
+
+  double highest(const Query&) const override {
+    return std::numeric_limits<float>::max();
+  }  // slopes' D / cos^4
+  Verdict judge(Evaluator* evaluator, const Surface& surface,
+                std::vector<std::vector<Query>> probes) const override {
+    constexpr double much = 0.01;
+    double most_quantised = 0;
+    for (const std::vector<Query>& probe : probes)
+      most_quantised = std::max(most_quantised, quantised(probe.front().roughness));
+    const References references = [this](const std::vector<Query>& queries) {
+      std::vector<double> densities(queries.size());
+      tbb::parallel_for(std::size_t{0}, queries.size(), [&](std::size_t n) {
+        const Query query = without_needless_periods(queries[n]);
+        densities[n] = reference::BeckmannMixture::density(mixture_.lobes(query.footprint, query.roughness),
+                                                           query.half_vector);
+      });
+      return densities;
+    };
+    const auto promise = [this](double roughness) { return Promise{3e-4 + quantised(roughness), 2e-5}; };
+    Verdict verdict = to_verdict(compare(evaluator, references, promise, surface, std::move(probes)));
+    if (most_quantised > much)
+      verdict.limitation =
+          fmt::format("16 bits hold a lobe's slope to {:.2g} roughnesses here: {:.3g} times the bound",
+                      most_quantised, verdict.worst);
+    return verdict;
+  }
+
+ private:
+  double quantised(double roughness) const {
+    constexpr double flank = 5.3, half_unit = 0.5 / 65534;  // standard deviations, at a cutoff of 1e-6
+    return flank * half_unit * leaf_slopes_ / roughness;
+  }
+
+  reference::BeckmannMixture mixture_;
+  double leaf_slopes_;
+};
 
 class GridJudge : public Judge {
  public:
@@ -180,9 +267,13 @@ std::unique_ptr<Judge> make_judge(const std::string& evaluator, const Surface& s
       return Promise{relative_bound(roughness), kPeakBound};
     });
   if (evaluator == "gaussians")
-    return std::make_unique<PromiseJudge>(sum_of_gaussians(surface), [](double) {
-      return Promise{1e-4, 2e-5};
-    });
+    return std::make_unique<MixtureJudge>(std::make_unique<PromiseJudge>(sum_of_gaussians(surface),
+                                                                         [](double) {
+                                                                           return Promise{1e-4, 2e-5};
+                                                                         }),
+                                          oracle);
+  if (evaluator == "beckmanns")
+    return std::make_unique<MixtureJudge>(std::make_unique<BeckmannJudge>(surface), oracle);
   return std::make_unique<ApproximationJudge>(oracle);
 }
 

@@ -36,10 +36,10 @@ struct HardEffort {
 
 /// Asks every evaluator of the registry, mixtures at `elements` = 1, and `grid`.
 ///
-/// `triangles` is set against the oracle, mixtures against their own sum in double precision, `grid` against
-/// [Kem25] Algorithm 1. Others approximate the map: they are set against the oracle, and further away than
-/// one percent is their documented limitation. All answers have to be finite, not negative, and not above
-/// the roughness' own peak.
+/// `triangles` is set against the oracle, `grid` against [Kem25] Algorithm 1. Others approximate the map:
+/// further from the oracle than a relative L2 of one percent is their documented limitation; mixtures also
+/// have to be their own sum in double precision. All answers have to be finite, not negative, and not above
+/// what can be.
 std::vector<HardResult> run_hard_case(const HardCase& hard_case, Device& device, const HardEffort& effort);
 
 /// The same for one evaluator on the case's surface.
