@@ -156,7 +156,7 @@ class BeckmannJudge : public Judge {
   }  // slopes' D / cos^4
   Verdict judge(Evaluator* evaluator, const Surface& surface,
                 std::vector<std::vector<Query>> probes) const override {
-    constexpr double much = 0.01;
+    constexpr double much = 0.01, steep = 0.5;
     double most_quantised = 0;
     for (const std::vector<Query>& probe : probes)
       most_quantised = std::max(most_quantised, quantised(probe.front().roughness));
@@ -175,6 +175,11 @@ class BeckmannJudge : public Judge {
       verdict.limitation =
           fmt::format("16 bits hold a lobe's slope to {:.2g} roughnesses here: {:.3g} times the bound",
                       most_quantised, verdict.worst);
+    else if (leaf_slopes_ > steep)
+      verdict.limitation = fmt::format(
+          "lobes are fitted by points that are exact where slopes are quadratic, and here "
+          "they run over {:.2g} in a few texels: {:.3g} times the bound",
+          leaf_slopes_, verdict.worst);
     return verdict;
   }
 
