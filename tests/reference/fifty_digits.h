@@ -18,8 +18,12 @@ class FiftyDigits {
 
   /// Mean of exp(-|w|^2 / 2) over a triangle in R^4.
   static Number mean(const std::array<Whitened, 3>& triangle) {
-    std::array<std::array<Number, 4>, 3> w;
+    std::array<Vector, 3> w;
     for (int i = 0; i < 3; ++i) std::copy(triangle[i].data(), triangle[i].data() + 4, w[i].begin());
+    return mean(w);
+  }
+  using Vector = std::array<Number, 4>;
+  static Number mean(const std::array<Vector, 3>& w) {
     std::array<Number, 4> x_axis = minus(w[1], w[0]), y_axis = minus(w[2], w[0]);
     scale(&x_axis, 1 / sqrt(dot(x_axis, x_axis)));
     subtract(&y_axis, x_axis, dot(x_axis, y_axis));
@@ -39,7 +43,6 @@ class FiftyDigits {
   struct Point {
     Number x, y;
   };
-  using Vector = std::array<Number, 4>;
 
   static Number dot(const Vector& a, const Vector& b) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3];
