@@ -29,8 +29,14 @@ void wrap_texel(double coordinate, int size, double shift, std::int32_t* whole, 
   *whole = (*whole % size + size) % size;
 }
 
-/// On a periodic map a footprint far wider than a period is a uniform one, and so is one of 0.8 periods: of
-/// the wrapped Gaussian's Fourier series exp(-2 pi^2 sigma^2 |k|^2) only 4 * 3e-6 is left beside the mean.
+std::int32_t to_fixed(double normal) {
+  return static_cast<std::int32_t>(std::lround(normal * MICA_NORMAL_ONE));
+}
+
+}  // namespace
+
+// On a periodic map a footprint far wider than a period is a uniform one, and so is one of 0.8 periods: of
+// the wrapped Gaussian's Fourier series exp(-2 pi^2 sigma^2 |k|^2) only 4 * 3e-6 is left beside the mean.
 Footprint without_needless_periods(const Footprint& footprint) {
   constexpr double uniform_variance = 0.8 * 0.8;
   const Eigen::Matrix2d& cov = footprint.cov_uv;
@@ -39,12 +45,6 @@ Footprint without_needless_periods(const Footprint& footprint) {
   if (smallest <= uniform_variance) return footprint;
   return {footprint.mean_uv, Eigen::Matrix2d::Identity() * uniform_variance};
 }
-
-std::int32_t to_fixed(double normal) {
-  return static_cast<std::int32_t>(std::lround(normal * MICA_NORMAL_ONE));
-}
-
-}  // namespace
 
 FootprintAxes footprint_axes(const Footprint& footprint, int map_width, int map_height) {
   const double w = map_width, h = map_height;

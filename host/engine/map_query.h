@@ -21,6 +21,10 @@ struct FootprintAxes {
 };
 FootprintAxes footprint_axes(const Footprint& footprint, int map_width, int map_height);
 
+/// The footprint, or where it is wider than a map period along both axes one of 0.8 periods, which wraps to
+/// the same uniform one within 1.3e-5.
+Footprint without_needless_periods(const Footprint& footprint);
+
 /// The query in the kernels' form. uv is wrapped in double precision, so 1e7 periods away nothing is lost but
 /// what the uv itself cannot hold.
 /// @param cutoff largest sum of both Gaussians' squared distances that counts, see `cutoff_for`.
