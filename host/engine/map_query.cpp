@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/LU>
 #include <cmath>
+#include <utility>
 
 #include "host/build/mixture.h"
 
@@ -19,7 +21,29 @@ double difference_of_products(double a, double b, double c, double d) {
   return std::fma(a, b, -cd) + std::fma(-c, d, cd);
 }
 
-/// Whole texels in [0, size) and the rest in [0, 1) of a texture coordinate less `shift` texels.
+std::int32_t to_fixed(double normal) {
+  return static_cast<std::int32_t>(std::lround(normal * MICA_NORMAL_ONE));
+}
+
+/// Two integer vectors that span all others, such that `form` of the first is the least of all and that of
+/// the second the least of those it does not divide: Lagrange's reduction.
+Eigen::Matrix2d reduced_waves(const Eigen::Matrix2d& form) {
+  Eigen::Vector2d a(1, 0), b(0, 1);
+  for (;;) {
+    if (a.dot(form * a) > b.dot(form * b)) std::swap(a, b);
+    const double multiple = std::round(a.dot(form * b) / a.dot(form * a));
+    if (multiple == 0) break;
+    const Eigen::Vector2d shorter = b - multiple * a;
+    if (!(shorter.dot(form * shorter) < b.dot(form * b))) break;
+    b = shorter;
+  }
+  Eigen::Matrix2d waves;
+  waves << a, b;
+  return waves;
+}
+
+}  // namespace
+
 void wrap_texel(double coordinate, int size, double shift, std::int32_t* whole, float* rest) {
   const double texels = (coordinate - std::floor(coordinate)) * size - shift;
   const double base = std::floor(texels);
@@ -29,21 +53,22 @@ void wrap_texel(double coordinate, int size, double shift, std::int32_t* whole, 
   *whole = (*whole % size + size) % size;
 }
 
-std::int32_t to_fixed(double normal) {
-  return static_cast<std::int32_t>(std::lround(normal * MICA_NORMAL_ONE));
-}
-
-}  // namespace
-
-// On a periodic map a footprint far wider than a period is a uniform one, and so is one of 0.8 periods: of
-// the wrapped Gaussian's Fourier series exp(-2 pi^2 sigma^2 |k|^2) only 4 * 3e-6 is left beside the mean.
+/// On a periodic map a footprint weights each wave k of the map's Fourier series, k a pair of integers, by
+/// exp(-2 pi^2 k' cov k). Where that exponent lets nothing through, covariances that let nothing through
+/// either are as good: a footprint of many periods has one of at most 0.8, of which 4 * 3e-6 is left beside
+/// the mean. One that is long only one way, and still sees waves across it, becomes as short as keeps just
+/// those: 0.8 periods of the lattice line along it.
 Footprint without_needless_periods(const Footprint& footprint) {
   constexpr double uniform_variance = 0.8 * 0.8;
-  const Eigen::Matrix2d& cov = footprint.cov_uv;
-  const double smallest =
-      0.5 * (cov(0, 0) + cov(1, 1)) - std::hypot(0.5 * (cov(0, 0) - cov(1, 1)), cov(0, 1));
-  if (smallest <= uniform_variance) return footprint;
-  return {footprint.mean_uv, Eigen::Matrix2d::Identity() * uniform_variance};
+  const Eigen::Matrix2d waves = reduced_waves(footprint.cov_uv);
+  const Eigen::Matrix2d form = waves.transpose() * footprint.cov_uv * waves;
+  if (form(1, 1) <= uniform_variance) return footprint;
+  if (form(0, 0) > uniform_variance)
+    return {footprint.mean_uv, Eigen::Matrix2d::Identity() * uniform_variance};
+  const Eigen::Matrix2d to_plane =
+      waves.inverse().array().round().matrix();  // of integers: its determinant is 1
+  const Eigen::Vector2d variances(form(0, 0), uniform_variance);
+  return {footprint.mean_uv, to_plane.transpose() * variances.asDiagonal() * to_plane};
 }
 
 FootprintAxes footprint_axes(const Footprint& footprint, int map_width, int map_height) {
@@ -115,12 +140,6 @@ device_types::mica_map_query to_map_query(const Query& query, const device_types
   return result;
 }
 
-namespace {
-
-/// What the position kernels' weights under a footprint sum to, by Poisson's summation of
-/// sum_n h^2 N(h (n + 1/2) - rest; cov): 1 where the kernels and the footprint are wide, 6% an axis off where
-/// they are not.
-/// @param cov_spacings of footprint and kernel together, in spacings^2.
 double sum_of_weights(const Eigen::Matrix2d& cov_spacings, const Eigen::Vector2d& mean_spacings) {
   constexpr int orders = 2;  // the third one's terms are below exp(-2 pi^2 9 k) = 1e-14
   double sum = 0;
@@ -134,8 +153,6 @@ double sum_of_weights(const Eigen::Matrix2d& cov_spacings, const Eigen::Vector2d
   }
   return sum;
 }
-
-}  // namespace
 
 device_types::mica_mixture_query to_mixture_query(const Query& query, const device_types::mica_map_grid& grid,
                                                   Interpolation interpolation, int elements, double cutoff) {

@@ -10,10 +10,10 @@ namespace mica {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kFirstRoughness = 0.02;      // whose cells are not narrower than asked for
-constexpr double kLargestAspect = 128;        // single precision keeps 0.1% of such a footprint's determinant
-constexpr double kSlack = 1e-9;               // of ratios that are meant to be equal
-constexpr double kUniformSigmaPeriods = 0.8;  // see without_needless_periods
+constexpr double kFirstRoughness = 0.02;  // whose cells are not narrower than asked for
+constexpr double kLargestAspect = 128;    // single precision keeps 0.1% of such a footprint's determinant
+constexpr double kSlack = 1e-9;           // of ratios that are meant to be equal
+constexpr double kUniformVariance = 0.8 * 0.8;  // see without_needless_periods
 
 }  // namespace
 
@@ -28,7 +28,7 @@ std::optional<PyramidChoice> choose_level(const Query& query, int map_width, int
   const int whole_map = whole_map_block(map_width, map_height);
   const Footprint footprint = without_needless_periods(query.footprint);
   const FootprintAxes axes = footprint_axes(footprint, map_width, map_height);
-  choice.uniform = footprint.cov_uv != query.footprint.cov_uv;
+  choice.uniform = footprint.cov_uv == Eigen::Matrix2d::Identity() * kUniformVariance;
   if (choice.uniform) {
     choice.block = whole_map;
     return choice;
@@ -59,7 +59,8 @@ device_types::mica_pyramid_query to_pyramid_query(const Query& query,
                                           (static_cast<double>(level.width) * level.height));
     return result;
   }
-  const FootprintAxes axes = footprint_axes(query.footprint, level.width, level.height);
+  const FootprintAxes axes =
+      footprint_axes(without_needless_periods(query.footprint), level.width, level.height);
   const double variance_1 = axes.sigma_major_texels * axes.sigma_major_texels,
                variance_2 = axes.sigma_minor_texels * axes.sigma_minor_texels;
   const Eigen::Matrix2d cov =
