@@ -5,7 +5,7 @@
 #include <ctime>
 #include <numeric>
 
-#include "bench/coherent.h"
+#include "host/bench/coherent.h"
 #include "host/base/error.h"
 #include "host/base/stopwatch.h"
 #include "host/engine/accuracy.h"
