@@ -70,15 +70,15 @@ void read_shape(TableReader& table, ShapeDescription& shape,
   }
 }
 
-LightDescription read_point(TableReader& light) {
+void read_point(TableReader& light, SceneDescription& scene) {
   PointLight point;
   light.require("position", "an array of 3 numbers");
   light.read("position", point.position, coordinate);
   light.read("intensity", point.intensity, radiance);
-  return point;
+  scene.lights.emplace_back(point);
 }
 
-LightDescription read_directional(TableReader& light) {
+void read_directional(TableReader& light, SceneDescription& scene) {
   DirectionalLight directional;
   light.require("direction", "an array of 3 numbers");
   light.read("direction", directional.direction, coordinate);
@@ -86,15 +86,34 @@ LightDescription read_directional(TableReader& light) {
     light.report("direction", "found no length; expected the direction in which the light travels");
   }
   light.read("irradiance", directional.irradiance, radiance);
-  return directional;
+  scene.lights.emplace_back(directional);
 }
 
-void read_light(TableReader& table, LightDescription& light) {
-  LightDescription (*read)(TableReader&) = nullptr;
-  table.require("type", "one of: point, directional");
-  table.read("type", read, {{"point", read_point}, {"directional", read_directional}});
+void read_environment(TableReader& light, SceneDescription& scene) {
+  EnvironmentLight environment;
+  light.require("image", "a lat-long EXR or HDR image");
+  light.read_file("image", environment.path);
+  light.read("scale", environment.radiance, radiance);
+  light.read("rotation", environment.rotation_degrees, closed(-360, 360));
+  scene.environments.push_back(environment);
+}
+
+void read_furnace(TableReader& light, SceneDescription& scene) {
+  EnvironmentLight furnace;
+  light.read("radiance", furnace.radiance, radiance);
+  scene.environments.push_back(furnace);
+}
+
+void read_light(TableReader& table, SceneDescription& scene) {
+  void (*read)(TableReader&, SceneDescription&) = nullptr;
+  table.require("type", "one of: point, directional, environment, furnace");
+  table.read("type", read,
+             {{"point", read_point},
+              {"directional", read_directional},
+              {"environment", read_environment},
+              {"furnace", read_furnace}});
   if (read) {
-    light = read(table);
+    read(table, scene);
   } else {
     table.accept_any_key();
   }
@@ -118,7 +137,8 @@ SceneDescription read_scene(TableReader& job, const std::vector<SurfaceDescripti
   for (const MaterialDescription& material : scene.materials) material_names.push_back(material.name);
   job.read_table_array(
       "shape", [&](TableReader& table) { read_shape(table, scene.shapes.emplace_back(), material_names); });
-  job.read_table_array("light", [&](TableReader& table) { read_light(table, scene.lights.emplace_back()); });
+  job.read_table_array("light", [&](TableReader& table) { read_light(table, scene); });
+  scene.background.is_environment = !scene.environments.empty() && !job.has("background");
   job.read_table("background", [&](TableReader& table) { read_background(table, scene.background); });
   return scene;
 }

@@ -9,6 +9,9 @@
 
 namespace mica {
 
+/// A ray that leaves a hit along `direction`, on the side of the surface to which that points.
+Ray ray_from(const Hit& hit, const Eigen::Vector3d& direction);
+
 /// All shapes of a scene, ready to be hit. Immutable after construction; used from any number of threads.
 class Geometry {
  public:

@@ -45,6 +45,11 @@ Illumination illuminate(const LightDescription& light, const Eigen::Vector3d& po
   return std::visit(Illuminate{position}, light);
 }
 
+BounceFresnel::BounceFresnel(const Fresnel& fresnel, const Eigen::Vector3d& view,
+                             const Eigen::Vector3d& light)
+    : single(reflectance(fresnel, light.dot((view + light).normalized()))),
+      multiple(reflectance(fresnel, view.z())) {}
+
 Color glint_weight(const Fresnel& fresnel, double masking_alpha, const Eigen::Vector3d& n,
                    const Eigen::Vector3d& to_eye, const Eigen::Vector3d& to_light) {
   const Eigen::Vector3d half = (to_eye + to_light).normalized();
