@@ -141,8 +141,8 @@ TEST(GatherLight, GlossyPlaneReflectsTheSky) {
 
 TEST(GatherLight, TechniquesAgreeOnGlints) {
   const std::string material =
-      "surface = \"noise\"\nroughness = 0.03\nrepeat = [40, 40]\ndiffuse = [0.1, 0.1, 0.1]\n";
-  const std::string job = plane_job(material, environment(lamp_sky), 5, "samples = 64");
+      "surface = \"noise\"\nroughness = 0.1\nrepeat = [40, 40]\ndiffuse = [0.1, 0.1, 0.1]\n";
+  const std::string job = plane_job(material, environment(lamp_sky), 5, "samples = 128");
   const Image both = render_job(job, Techniques::both), lights = render_job(job, Techniques::lights),
               brdf = render_job(job, Techniques::brdf);
   for (const Image* other : {&lights, &brdf})

@@ -18,7 +18,7 @@ class NdfBrdfTest : public testing::TestWithParam<NdfBrdf::Draws> {
  protected:
   static Surface noise() {
     SpectrumSurface spectrum;
-    spectrum.resolution = 64, spectrum.rms_slope = 0.4, spectrum.correlation = 6;
+    spectrum.resolution = 64, spectrum.rms_slope = 0.4, spectrum.correlation_texels = 6;
     SurfaceDescription description;
     description.source = spectrum;
     return make_surface(description, nullptr);
@@ -92,8 +92,8 @@ TEST_P(NdfBrdfTest, WeightsAreTheValueOverTheDensity) {
       continue;
     }
     ++drawn_at_all;
-    EXPECT_NEAR(drawn[n].pdf, values[n].pdf, 1e-4f * values[n].pdf);
-    EXPECT_NEAR(drawn[n].weight_single * drawn[n].pdf, values[n].single, 1e-4f * values[n].single + 1e-7f);
+    EXPECT_NEAR(drawn[n].pdf, values[n].pdf, 1e-3f * values[n].pdf);
+    EXPECT_NEAR(drawn[n].weight_single * drawn[n].pdf, values[n].single, 1e-3f * values[n].single + 1e-7f);
     EXPECT_EQ(drawn[n].weight_multiple, 0);
   }
   EXPECT_GT(drawn_at_all, 350);
@@ -105,7 +105,7 @@ TEST_P(NdfBrdfTest, HorizonsAreFinite) {
     for (const BrdfSample& sample : draw(400)) {
       EXPECT_TRUE(std::isfinite(sample.pdf) && std::isfinite(sample.weight_single));
       EXPECT_GE(sample.weight_single, 0);
-      if (z < 1e-6) EXPECT_EQ(sample.pdf, 0);
+      EXPECT_TRUE(z > 1e-6 || sample.pdf == 0);
     }
     const BrdfQuery below{from_.footprint, from_.view, {0, 0.6, -0.8}, from_.roughness};
     const BrdfQuery opposite{from_.footprint, from_.view, -from_.view, from_.roughness};
@@ -123,7 +123,7 @@ TEST_P(NdfBrdfTest, EnergyIsTheMeanWeight) {
   for (const BrdfSample& sample : draw(count)) sum += sample.weight_single;
   const Albedo albedo = brdf_.energy({from_}).front();
   EXPECT_NEAR(albedo.single, sum / count, 0.1);
-  EXPECT_FLOAT_EQ(albedo.lost, std::max(0.0f, 1 - albedo.single));
+  EXPECT_NEAR(albedo.lost, std::max(0.0f, 1 - albedo.single), 1e-6);
 }
 
 INSTANTIATE_TEST_SUITE_P(Draws, NdfBrdfTest,

@@ -32,7 +32,8 @@ const char* const surface_keys = "resolution, rms_slope, correlation, seed";
 
 const std::vector<Mistake> unknown_keys = {
     {"", "[image]\n  @widht = 3",
-     "image.widht: found an unknown key; expected one of: width, height, subpixels, aovs, exposure "
+     "image.widht: found an unknown key; expected one of: width, height, subpixels, samples, max_bounces, "
+     "aovs, exposure "
      "(did you mean \"width\"?)"},
     {"", "[audit]\n@turbo = 1", "audit.turbo: found an unknown key; expected \"samples\""},
     {"", "[@lights]",

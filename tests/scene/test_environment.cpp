@@ -76,8 +76,16 @@ TEST(LowDiscrepancy, EveryBoxOfEqualAreaGetsOnePoint) {
 }
 
 TEST_F(EnvironmentTest, DensityIsOneInAllAndNowhereZeroWhereLightIs) {
-  const Environment environment({{lamp(), {2, 2, 2}, 30}});
-  EXPECT_NEAR(over_sphere(1000, [&](const auto& d) { return environment.pdf(d); }), 1, 2e-3);
+  const Environment environment({{lamp(), {2, 2, 2}, 45}});  // two pixels
+  double sum = 0;
+  constexpr int rows = 8 * 3, columns = 16 * 3;
+  for (int row = 0; row < rows; ++row) {
+    const double top = std::cos(pi * row / rows), bottom = std::cos(pi * (row + 1) / rows);
+    for (int column = 0; column < columns; ++column)
+      sum += environment.pdf(direction(2 * pi * (column + 0.5) / columns, (top + bottom) / 2)) *
+             (top - bottom) * 2 * pi / columns;
+  }
+  EXPECT_NEAR(sum, 1, 1e-12);
   over_sphere(300, [&](const Eigen::Vector3d& d) {
     EXPECT_TRUE(environment.pdf(d) > 0 || environment.radiance(d).isZero(0)) << d.transpose();
     return 0;
