@@ -82,16 +82,19 @@ double mebibytes(std::size_t bytes) {
 
 Plan make_plan(const Job& job) {
   Plan plan;
+  plan.gathers_light = !job.scene.environments.empty() || job.image.max_bounces > 1;
+  if (plan.gathers_light) plan.samples = job.image.samples, plan.max_bounces = job.image.max_bounces;
   std::set<std::string> used;
-  for (const ShapeDescription& shape : job.scene.shapes) used.insert(shape.material);
+  for (const ShapeDescription& shape : job.scene.shapes) {
+    used.insert(shape.material);
+    for (const PartMaterial& part : shape.parts) used.insert(part.material);
+  }
   for (const MaterialDescription& material : job.scene.materials)
     plan.evaluator_of_material.push_back(
         used.count(material.name) ? evaluator_for(job, material, &plan.evaluators) : -1);
 
   plan.channels = channels_for(job.image.aovs);
   plan.queries_a_batch = kQueriesABatch;
-  plan.gathers_light = !job.scene.environments.empty() || job.image.max_bounces > 1;
-  if (plan.gathers_light) plan.samples = job.image.samples, plan.max_bounces = job.image.max_bounces;
   const std::size_t queries_a_row = static_cast<std::size_t>(job.image.width) * job.image.subpixels *
                                     job.image.subpixels *
                                     std::max<std::size_t>(job.scene.lights.size() + 2 * plan.samples, 1);

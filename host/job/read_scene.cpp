@@ -26,13 +26,6 @@ void read_camera(TableReader& table, CameraDescription& camera) {
 
 using Geometry = decltype(ShapeDescription::geometry);
 
-Geometry read_plane(TableReader& shape) {
-  PlaneShape plane;
-  shape.read("center", plane.center, coordinate);
-  shape.read("size", plane.size, extent);
-  return plane;
-}
-
 Geometry read_sphere(TableReader& shape) {
   SphereShape sphere;
   shape.read("center", sphere.center, coordinate);
@@ -55,65 +48,50 @@ Geometry read_mesh(TableReader& shape) {
   return mesh;
 }
 
+/// Any of the parametric shapes that are described by where they stand and how large they are.
+template <typename Shape>
+Geometry read_sized(TableReader& table) {
+  Shape shape;
+  table.read("center", shape.center, coordinate);
+  table.read("size", shape.size, extent);
+  return shape;
+}
+
+void read_placement(TableReader& shape, Placement& placement) {
+  shape.read("scale", placement.scale, closed(1e-6, 1e6));
+  shape.read("rotate", placement.rotate_degrees, closed(-360, 360));
+  shape.read("translate", placement.translate, coordinate);
+}
+
+PartMaterial read_part(TableReader& table, const std::vector<std::string_view>& material_names) {
+  PartMaterial part;
+  table.require("name", "the name of a part of the shape");
+  table.read("name", part.part);
+  table.require("material", "the name of a material");
+  table.read_reference("material", part.material, "material", material_names);
+  return part;
+}
+
 void read_shape(TableReader& table, ShapeDescription& shape,
                 const std::vector<std::string_view>& material_names) {
   Geometry (*read_geometry)(TableReader&) = nullptr;
-  table.require("type", "one of: plane, sphere, shell, mesh");
+  table.require("type", "one of: plane, sphere, shell, jar, spoon, fork, mesh");
   table.read("type", read_geometry,
-             {{"plane", read_plane}, {"sphere", read_sphere}, {"shell", read_shell}, {"mesh", read_mesh}});
+             {{"plane", read_sized<PlaneShape>},
+              {"sphere", read_sphere},
+              {"shell", read_shell},
+              {"jar", read_sized<JarShape>},
+              {"spoon", read_sized<SpoonShape>},
+              {"fork", read_sized<ForkShape>},
+              {"mesh", read_mesh}});
   table.require("material", "the name of a material");
   table.read_reference("material", shape.material, "material", material_names);
+  read_placement(table, shape.placement);
+  if (table.has("parts"))
+    table.read_table_array(
+        "parts", [&](TableReader& part) { shape.parts.push_back(read_part(part, material_names)); });
   if (read_geometry) {
     shape.geometry = read_geometry(table);
-  } else {
-    table.accept_any_key();
-  }
-}
-
-void read_point(TableReader& light, SceneDescription& scene) {
-  PointLight point;
-  light.require("position", "an array of 3 numbers");
-  light.read("position", point.position, coordinate);
-  light.read("intensity", point.intensity, radiance);
-  scene.lights.emplace_back(point);
-}
-
-void read_directional(TableReader& light, SceneDescription& scene) {
-  DirectionalLight directional;
-  light.require("direction", "an array of 3 numbers");
-  light.read("direction", directional.direction, coordinate);
-  if (directional.direction.norm() < 1e-9) {
-    light.report("direction", "found no length; expected the direction in which the light travels");
-  }
-  light.read("irradiance", directional.irradiance, radiance);
-  scene.lights.emplace_back(directional);
-}
-
-void read_environment(TableReader& light, SceneDescription& scene) {
-  EnvironmentLight environment;
-  light.require("image", "a lat-long EXR or HDR image");
-  light.read_file("image", environment.path);
-  light.read("scale", environment.radiance, radiance);
-  light.read("rotation", environment.rotation_degrees, closed(-360, 360));
-  scene.environments.push_back(environment);
-}
-
-void read_furnace(TableReader& light, SceneDescription& scene) {
-  EnvironmentLight furnace;
-  light.read("radiance", furnace.radiance, radiance);
-  scene.environments.push_back(furnace);
-}
-
-void read_light(TableReader& table, SceneDescription& scene) {
-  void (*read)(TableReader&, SceneDescription&) = nullptr;
-  table.require("type", "one of: point, directional, environment, furnace");
-  table.read("type", read,
-             {{"point", read_point},
-              {"directional", read_directional},
-              {"environment", read_environment},
-              {"furnace", read_furnace}});
-  if (read) {
-    read(table, scene);
   } else {
     table.accept_any_key();
   }
@@ -137,7 +115,7 @@ SceneDescription read_scene(TableReader& job, const std::vector<SurfaceDescripti
   for (const MaterialDescription& material : scene.materials) material_names.push_back(material.name);
   job.read_table_array(
       "shape", [&](TableReader& table) { read_shape(table, scene.shapes.emplace_back(), material_names); });
-  job.read_table_array("light", [&](TableReader& table) { read_light(table, scene); });
+  read_lights(job, scene);
   scene.background.is_environment = !scene.environments.empty() && !job.has("background");
   job.read_table("background", [&](TableReader& table) { read_background(table, scene.background); });
   return scene;

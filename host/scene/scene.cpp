@@ -1,6 +1,7 @@
 #include "host/scene/scene.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -11,14 +12,15 @@
 #include "host/base/error.h"
 #include "host/scene/background.h"
 #include "host/scene/camera.h"
+#include "host/scene/coat.h"
 #include "host/scene/footprint.h"
 #include "host/scene/geometry.h"
+#include "host/scene/lobes.h"
 #include "host/scene/shading.h"
 
 namespace mica {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 constexpr double default_masking_alpha = 0.1;
 constexpr double filter_sigma_subpixels = 0.5;
 
@@ -28,17 +30,35 @@ Eigen::Vector2d wrap(const Eigen::Vector2d& uv) {
   return (wrapped.array() < 1).select(wrapped, 0);
 }
 
-std::vector<std::uint32_t> materials_of_shapes(const SceneDescription& description) {
-  std::vector<std::uint32_t> indices;
-  for (const ShapeDescription& shape : description.shapes) {
-    const auto found = std::find_if(description.materials.begin(), description.materials.end(),
-                                    [&](const MaterialDescription& m) { return m.name == shape.material; });
-    if (found == description.materials.end())
-      throw UsageError(
-          fmt::format("shape {}: there is no material '{}'", indices.size() + 1, shape.material));
-    indices.push_back(static_cast<std::uint32_t>(found - description.materials.begin()));
+std::uint32_t material_index(const SceneDescription& description, std::size_t shape,
+                             const std::string& name) {
+  const auto found = std::find_if(description.materials.begin(), description.materials.end(),
+                                  [&](const MaterialDescription& m) { return m.name == name; });
+  if (found == description.materials.end())
+    throw UsageError(fmt::format("shape {}: there is no material '{}'", shape + 1, name));
+  return static_cast<std::uint32_t>(found - description.materials.begin());
+}
+
+/// Indices of the materials of each shape's parts.
+using PartMaterials = std::vector<std::vector<std::uint32_t>>;
+
+PartMaterials materials_of_parts(const SceneDescription& description, const Geometry& geometry) {
+  PartMaterials materials;
+  for (std::size_t n = 0; n < description.shapes.size(); ++n) {
+    const ShapeDescription& shape = description.shapes[n];
+    const std::vector<std::string>& parts = geometry.parts(n);
+    materials.emplace_back(std::max<std::size_t>(parts.size(), 1),
+                           material_index(description, n, shape.material));
+    for (const PartMaterial& wanted : shape.parts) {
+      const auto part = std::find(parts.begin(), parts.end(), wanted.part);
+      if (part == parts.end())
+        throw UsageError(fmt::format("shape {}: found no part '{}'; its parts are: {}", n + 1, wanted.part,
+                                     parts.empty() ? "none" : fmt::format("{}", fmt::join(parts, ", "))));
+      materials[n][static_cast<std::size_t>(part - parts.begin())] =
+          material_index(description, n, wanted.material);
+    }
   }
-  return indices;
+  return materials;
 }
 
 struct IsUsableLight {
@@ -49,11 +69,14 @@ struct IsUsableLight {
     return light.direction.allFinite() && light.direction.norm() > 0 && light.irradiance.allFinite() &&
            light.irradiance.minCoeff() >= 0;
   }
-};
-
-/// Indices of a subpixel, as in LitPoint.
-struct Place {
-  std::uint32_t pixel, subpixel;
+  bool operator()(const SphereLight& light) const {
+    return (*this)(PointLight{light.position, light.intensity}) && std::isfinite(light.radius) &&
+           light.radius >= 0;
+  }
+  bool operator()(const DiskLight& light) const {
+    return (*this)(SphereLight{light.position, light.radius, light.intensity}) &&
+           light.direction.allFinite() && light.direction.norm() > 0;
+  }
 };
 
 /// What the rows of a block collect, each for itself.
@@ -74,6 +97,31 @@ void join(std::vector<RowQueries>* rows, std::vector<Item> RowQueries::*part, st
     all->insert(all->end(), (row.*part).begin(), (row.*part).end());
     std::vector<Item>().swap(row.*part);
   }
+}
+
+void check_lights(const std::vector<LightDescription>& lights) {
+  for (std::size_t i = 0; i < lights.size(); ++i)
+    if (!std::visit(IsUsableLight{}, lights[i]))
+      throw UsageError(fmt::format("light {}: expected finite values and no negative power", i + 1));
+}
+
+void complete(std::vector<double>* masking_alpha, std::size_t materials) {
+  for (const double alpha : *masking_alpha)
+    if (!(alpha >= 0 && std::isfinite(alpha))) throw UsageError(fmt::format("masking alpha of {}", alpha));
+  masking_alpha->resize(materials, default_masking_alpha);
+}
+
+/// Where on a light the shadow ray of a subpixel ends: all subpixels of a pixel cover the light evenly, in an
+/// order of the pixel's own, so that penumbras have no bands.
+Eigen::Vector2d shadow_sample(std::uint64_t pixel, int subpixel, int subpixels) {
+  std::uint64_t hash = (pixel + 1) * 0x9e3779b97f4a7c15u;  // SplitMix64
+  hash = (hash ^ (hash >> 30)) * 0xbf58476d1ce4e5b9u;
+  hash = (hash ^ (hash >> 27)) * 0x94d049bb133111ebu;
+  hash ^= hash >> 31;
+  const double step = 1.0 / subpixels, unit = 1.0 / 4294967296.0;
+  const Eigen::Vector2d shift(unit * static_cast<double>(hash >> 32),
+                              unit * static_cast<double>(hash & 0xffffffffu));
+  return wrap(step * Eigen::Vector2d(subpixel % subpixels, subpixel / subpixels) + shift);
 }
 
 /// Sums of one pixel's AOVs over the subpixels that hit a shape.
@@ -115,22 +163,57 @@ TracedRows empty_rows(int first_row, int row_count, int width) {
 
 }  // namespace
 
-struct Scene::Implementation {
-  PinholeCamera camera;
+namespace {
+
+/// What does not change from frame to frame.
+struct StaticScene {
   Geometry geometry;
   Background background;
   Environment environment;
+  bool shows_environment;  ///< where rays hit nothing
   std::vector<MaterialDescription> materials;
-  std::vector<double> masking_alpha;          ///< of each material
-  std::vector<std::uint32_t> shape_material;  ///< index of each shape's material
+  std::vector<std::optional<CoatInterface>> coats;  ///< of each material
+  PartMaterials part_materials;
+
+  Color far_radiance(const Eigen::Vector3d& direction) const {
+    return shows_environment ? environment.radiance(direction) : background.radiance(direction);
+  }
+};
+
+StaticScene make_static_scene(const SceneDescription& description) {
+  StaticScene made{Geometry(description.shapes),
+                   Background(description.background),
+                   Environment(description.environments),
+                   description.background.is_environment,
+                   description.materials,
+                   {},
+                   {}};
+  for (const MaterialDescription& material : description.materials)
+    made.coats.push_back(material.coat ? std::optional<CoatInterface>(*material.coat) : std::nullopt);
+  made.part_materials = materials_of_parts(description, made.geometry);
+  return made;
+}
+
+/// One of a pixel's footprints.
+struct Subpixel {
+  std::uint32_t pixel, index;    ///< as in LitPoint
+  Eigen::Vector2d light_sample;  ///< of shadow rays, see light_ray
+};
+
+}  // namespace
+
+struct Scene::Implementation {
+  std::shared_ptr<const StaticScene> shared;
+  PinholeCamera camera;
+  std::vector<double> masking_alpha;  ///< of each material
   std::vector<LightDescription> lights;
   LightGathering gathering;
-  bool shows_environment;  ///< where rays hit nothing
   int width, height, subpixels;
 
   /// Fills pixels [row * width, (row + 1) * width) of `rows`, and `queries`.
   void trace_row(int row, TracedRows* rows, RowQueries* queries) const;
-  Color shade(const CameraRay& ray, const Hit& hit, Place at, PixelMeans* means, RowQueries* queries) const;
+  Color shade(const CameraRay& ray, const Hit& hit, const Subpixel& subpixel, PixelMeans* means,
+              RowQueries* queries) const;
   LitBrdf lit_brdf(const GlintQuery& query, const LitPoint& point, const Illumination& incident) const;
 };
 
@@ -139,39 +222,34 @@ Scene::Scene(const SceneDescription& description, int width, int height, int sub
   if (width < 1 || height < 1) throw UsageError(fmt::format("image of {} x {} pixels", width, height));
   if (subpixels < 1 || subpixels > 16)
     throw UsageError(fmt::format("subpixels: found {}, expected 1 to 16", subpixels));
-  for (const double alpha : masking_alpha)
-    if (!(alpha >= 0 && std::isfinite(alpha))) throw UsageError(fmt::format("masking alpha of {}", alpha));
-  for (std::size_t i = 0; i < description.lights.size(); ++i)
-    if (!std::visit(IsUsableLight{}, description.lights[i]))
-      throw UsageError(fmt::format("light {}: expected finite values and no negative power", i + 1));
-  masking_alpha.resize(description.materials.size(), default_masking_alpha);
+  complete(&masking_alpha, description.materials.size());
+  check_lights(description.lights);
   gathering.patch_materials.resize(description.materials.size(), false);
-
-  std::vector<std::uint32_t> shape_material = materials_of_shapes(description);
+  const PinholeCamera camera(description.camera, width, height);
   implementation_.reset(new Implementation{
-      PinholeCamera(description.camera, width, height), Geometry(description.shapes),
-      Background(description.background), Environment(description.environments), description.materials,
-      std::move(masking_alpha), std::move(shape_material), description.lights, std::move(gathering),
-      description.background.is_environment, width, height, subpixels});
+      std::make_shared<const StaticScene>(make_static_scene(description)), camera, std::move(masking_alpha),
+      description.lights, std::move(gathering), width, height, subpixels});
 }
+
+Scene::Scene(std::unique_ptr<Implementation> implementation) : implementation_(std::move(implementation)) {}
 
 Scene::~Scene() = default;
 Scene::Scene(Scene&&) noexcept = default;
 
 const Geometry& Scene::geometry() const {
-  return implementation_->geometry;
+  return implementation_->shared->geometry;
 }
 const Environment& Scene::environment() const {
-  return implementation_->environment;
+  return implementation_->shared->environment;
 }
 const std::vector<LightDescription>& Scene::lights() const {
   return implementation_->lights;
 }
 const std::vector<MaterialDescription>& Scene::materials() const {
-  return implementation_->materials;
+  return implementation_->shared->materials;
 }
 std::uint32_t Scene::material_of(const Hit& hit) const {
-  return implementation_->shape_material[hit.shape];
+  return implementation_->shared->part_materials[hit.shape][hit.part];
 }
 double Scene::masking_alpha(std::uint32_t material) const {
   return implementation_->masking_alpha[material];
@@ -185,56 +263,73 @@ LitBrdf Scene::Implementation::lit_brdf(const GlintQuery& query, const LitPoint&
   lit.pixel = query.pixel;
   lit.material = query.material;
   const Color irradiance = incident.irradiance / (subpixels * subpixels);
-  const BounceFresnel fresnel(materials[query.material].specular, lit.query.view, lit.query.light);
+  const BounceFresnel fresnel(shared->materials[query.material].specular, lit.query.view, lit.query.light);
   lit.weight_single = fresnel.single.cwiseProduct(irradiance).cast<float>();
   lit.weight_multiple = fresnel.multiple.cwiseProduct(irradiance).cast<float>();
   return lit;
 }
 
-Color Scene::Implementation::shade(const CameraRay& ray, const Hit& hit, Place at, PixelMeans* means,
-                                   RowQueries* queries) const {
-  const std::uint32_t material_index = shape_material[hit.shape];
-  const MaterialDescription& material = materials[material_index];
+Scene Scene::with_view(const CameraDescription& camera, const std::vector<LightDescription>& lights,
+                       const std::vector<double>& masking_alpha) const {
+  const Implementation& self = *implementation_;
+  std::vector<double> alphas = masking_alpha;
+  complete(&alphas, self.shared->materials.size());
+  check_lights(lights);
+  return Scene(std::unique_ptr<Implementation>(
+      new Implementation{self.shared, PinholeCamera(camera, self.width, self.height), std::move(alphas),
+                         lights, self.gathering, self.width, self.height, self.subpixels}));
+}
+
+Color Scene::Implementation::shade(const CameraRay& ray, const Hit& hit, const Subpixel& subpixel,
+                                   PixelMeans* means, RowQueries* queries) const {
+  const std::uint32_t material_index = shared->part_materials[hit.shape][hit.part];
+  const MaterialDescription& material = shared->materials[material_index];
+  const std::optional<CoatInterface>& coat = shared->coats[material_index];
   const Eigen::Vector3d to_eye = -ray.direction.normalized();
   const TangentFrame frame = tangent_frame(hit, to_eye);
   const Eigen::Matrix2d duv = material.repeat.asDiagonal() * uv_differentials(ray, hit);
+  const double alpha = masking_alpha[material_index];
 
   GlintQuery query;
   query.query.footprint.mean_uv = wrap(hit.uv.cwiseProduct(material.repeat));
   query.query.footprint.cov_uv = footprint_covariance(duv, filter_sigma_subpixels / subpixels);
-  query.query.roughness = material.roughness;
-  query.pixel = at.pixel;
+  query.pixel = subpixel.pixel;
   query.material = material_index;
   means->add(query.query.footprint, frame.z);
-  Color diffuse = Color::Zero();
-  if (frame.face_normal.dot(to_eye) < min_cosine) return diffuse;
+  Color smooth = Color::Zero();  // what needs no P-NDF
+  if (frame.face_normal.dot(to_eye) < min_cosine) return smooth;
 
-  const LitPoint point{hit, frame, to_eye, query.query.footprint, at.pixel, at.subpixel, material_index};
+  const LitPoint point{hit,           frame, to_eye, query.query.footprint, subpixel.pixel, subpixel.index,
+                       material_index};
   if (gathering.points) queries->points.push_back(point);
 
   for (const LightDescription& light : lights) {
     const Illumination incident = illuminate(light, hit.position);
+    if (!(incident.irradiance.maxCoeff() > 0)) continue;
     const double cos_i = incident.direction.dot(frame.z);
     if (cos_i < min_cosine || incident.direction.dot(frame.face_normal) < min_cosine) continue;
-    if (geometry.occluded(hit, incident.direction, incident.distance)) continue;
-    diffuse += (material.diffuse / pi * cos_i).cwiseProduct(incident.irradiance);
+    const LightRay to_light = light_ray(light, hit.position, subpixel.light_sample);
+    if (to_light.direction.dot(frame.face_normal) < min_cosine) continue;
+    if (shared->geometry.occluded(hit, to_light.direction, to_light.distance)) continue;
 
+    const LobesSeen seen = see_lobes(material, coat, alpha, frame.z, to_eye, incident);
+    smooth += seen.smooth.cwiseProduct(incident.irradiance);
+    query.query.half_vector = frame.on_disk(seen.half_vector);
+    query.query.roughness = seen.roughness;
     if (gathering.patch_materials[material_index]) {
       queries->lit.push_back(lit_brdf(query, point, incident));
       continue;
     }
-    query.query.half_vector = frame.on_disk((to_eye + incident.direction).normalized());
     query.weight =
-        glint_weight(material.specular, masking_alpha[material_index], frame.z, to_eye, incident.direction)
-            .cwiseProduct(incident.irradiance / (subpixels * subpixels))
-            .cast<float>();
+        seen.glint_weight.cwiseProduct(incident.irradiance / (subpixels * subpixels)).cast<float>();
     if (query.weight.maxCoeff() > 0) queries->glints.push_back(query);
   }
-  return diffuse;
+  return smooth;
 }
 
 void Scene::Implementation::trace_row(int row, TracedRows* rows, RowQueries* queries) const {
   const double step = 1.0 / subpixels;
+  const auto first_pixel = static_cast<std::uint64_t>(rows->first_row) * static_cast<std::uint64_t>(width);
   for (int column = 0; column < width; ++column) {
     const std::size_t pixel =
         static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(column);
@@ -246,11 +341,10 @@ void Scene::Implementation::trace_row(int row, TracedRows* rows, RowQueries* que
       const double x = column + (i + 0.5) * step;
       const double y = rows->first_row + row + (j + 0.5) * step;
       const CameraRay ray = camera.ray(x, y);
-      const std::optional<Hit> hit = geometry.intersect({ray.origin, ray.direction});
-      const Place at{static_cast<std::uint32_t>(pixel), static_cast<std::uint32_t>(subpixel)};
-      radiance += hit                 ? shade(ray, *hit, at, &means, queries)
-                  : shows_environment ? environment.radiance(ray.direction)
-                                      : background.radiance(ray.direction);
+      const std::optional<Hit> hit = shared->geometry.intersect({ray.origin, ray.direction});
+      const Subpixel here{static_cast<std::uint32_t>(pixel), static_cast<std::uint32_t>(subpixel),
+                          shadow_sample(first_pixel + pixel, subpixel, subpixels)};
+      radiance += hit ? shade(ray, *hit, here, &means, queries) : shared->far_radiance(ray.direction);
     }
     rows->radiance[pixel] = (radiance * step * step).cast<float>();
     rows->query_count[pixel] =

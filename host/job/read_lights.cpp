@@ -1,0 +1,97 @@
+#include <functional>
+
+#include "host/job/read_job.h"
+
+namespace mica {
+namespace {
+
+const Interval coordinate = closed(-1e6, 1e6);
+const Interval power = closed(0, 1e9);
+const Interval extent = open_low(0, 1e6);
+
+void read_direction(TableReader& light, Eigen::Vector3d& direction, std::string_view meaning) {
+  light.read("direction", direction, coordinate);
+  if (direction.norm() < 1e-9) light.report("direction", meaning);
+}
+
+// What each kind of light can be told.
+
+void read_values(TableReader& light, PointLight& point) {
+  light.read("position", point.position, coordinate);
+  light.read("intensity", point.intensity, power);
+}
+
+void read_values(TableReader& light, DirectionalLight& directional) {
+  read_direction(light, directional.direction,
+                 "found no length; expected the direction in which the light travels");
+  light.read("irradiance", directional.irradiance, power);
+}
+
+void read_values(TableReader& light, SphereLight& sphere) {
+  light.read("position", sphere.position, coordinate);
+  light.read("radius", sphere.radius, extent);
+  light.read("intensity", sphere.intensity, power);
+}
+
+void read_values(TableReader& light, DiskLight& disk) {
+  light.read("position", disk.position, coordinate);
+  read_direction(light, disk.direction, "found no length; expected the direction that the disk faces");
+  light.read("radius", disk.radius, extent);
+  light.read("intensity", disk.intensity, power);
+}
+
+LightDescription make_lamp(const LightDescription& kind, TableReader& light) {
+  LightDescription lamp = kind;
+  const char* place = std::holds_alternative<DirectionalLight>(lamp) ? "direction" : "position";
+  light.require(place, "an array of 3 numbers");
+  std::visit([&](auto& described) { read_values(light, described); }, lamp);
+  return lamp;
+}
+
+EnvironmentLight make_environment(TableReader& light) {
+  EnvironmentLight environment;
+  light.require("image", "a lat-long EXR or HDR image");
+  light.read_file("image", environment.path);
+  light.read("scale", environment.radiance, power);
+  light.read("rotation", environment.rotation_degrees, closed(-360, 360));
+  return environment;
+}
+
+EnvironmentLight make_furnace(TableReader& light) {
+  EnvironmentLight furnace;
+  light.read("radiance", furnace.radiance, power);
+  return furnace;
+}
+
+/// A light of the kind that "type" names; nothing, with a report, when that is not clear.
+void read_light(TableReader& light, SceneDescription& scene) {
+  using Make = std::function<void()>;
+  const auto lamp = [&](const LightDescription& kind) {
+    return Make([&light, &scene, kind] { scene.lights.push_back(make_lamp(kind, light)); });
+  };
+  const auto far = [&](EnvironmentLight (*make)(TableReader&)) {
+    return Make([&light, &scene, make] { scene.environments.push_back(make(light)); });
+  };
+  Make make;
+  light.require("type", "one of: point, directional, sphere, disk, environment, furnace");
+  light.read("type", make,
+             {{"point", lamp(PointLight{})},
+              {"directional", lamp(DirectionalLight{})},
+              {"sphere", lamp(SphereLight{})},
+              {"disk", lamp(DiskLight{})},
+              {"environment", far(make_environment)},
+              {"furnace", far(make_furnace)}});
+  if (make) {
+    make();
+  } else {
+    light.accept_any_key();
+  }
+}
+
+}  // namespace
+
+void read_lights(TableReader& job, SceneDescription& scene) {
+  job.read_table_array("light", [&](TableReader& light) { read_light(light, scene); });
+}
+
+}  // namespace mica
