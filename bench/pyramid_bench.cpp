@@ -5,9 +5,9 @@
 #include <ctime>
 #include <numeric>
 
-#include "host/bench/coherent.h"
 #include "host/base/error.h"
 #include "host/base/stopwatch.h"
+#include "host/bench/coherent.h"
 #include "host/engine/accuracy.h"
 #include "host/engine/pyramid_evaluator.h"
 #include "host/engine/triangle_evaluator.h"
