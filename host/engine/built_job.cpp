@@ -6,6 +6,7 @@
 
 #include "host/base/stopwatch.h"
 #include "host/engine/make_evaluator.h"
+#include "host/engine/ndf_brdf.h"
 
 namespace mica {
 namespace {
@@ -28,6 +29,12 @@ BuiltJob::BuiltJob(const Job& job, const Plan& plan, Device& device)
   const Stopwatch watch;
   for (std::size_t n = 0; n < surfaces_.size(); ++n)
     evaluators_.push_back(make_evaluator(plan.evaluators[n].evaluator, device, surfaces_[n]));
+  for (std::size_t n = 0; n < surfaces_.size() && plan.gathers_light; ++n) {
+    // Of the densities, that of triangles alone is that of the surface's normals, and not an approximation.
+    const auto draws = plan.evaluators[n].evaluator == "triangles" ? NdfBrdf::Draws::surface_normals
+                                                                   : NdfBrdf::Draws::smooth_lobe;
+    brdfs_.push_back(std::make_unique<NdfBrdf>(*evaluators_[n], surfaces_[n], draws));
+  }
   build_seconds_ = watch.seconds();
 }
 
@@ -55,7 +62,8 @@ Scene BuiltJob::make_scene() {
     alphas.push_back(evaluator < 0 ? kUnusedAlpha
                                    : masking_alpha(surfaces_[evaluator], job_.scene.materials[n].roughness));
   }
-  Scene scene(job_.scene, job_.image.width, job_.image.height, job_.image.subpixels, alphas);
+  Scene scene(job_.scene, job_.image.width, job_.image.height, job_.image.subpixels, alphas,
+              {plan_.gathers_light, {}});
   scene_seconds_ = watch.seconds();
   return scene;
 }

@@ -6,6 +6,7 @@
 
 #include "host/device/device.h"
 #include "host/engine/evaluator.h"
+#include "host/engine/patch_brdf.h"
 #include "host/engine/plan.h"
 #include "host/job/job.h"
 #include "host/scene/scene.h"
@@ -23,6 +24,7 @@ class BuiltJob {
   const Plan& plan() const { return plan_; }
   const Scene& scene() const { return scene_; }
   Evaluator& evaluator(std::size_t n) const { return *evaluators_[n]; }  ///< by PlannedEvaluator
+  PatchBrdf& brdf(std::size_t n) const { return *brdfs_[n]; }            ///< the same; if light is gathered
   std::vector<const Surface*> surfaces() const;                          ///< by PlannedEvaluator
 
   double surface_seconds() const { return surface_seconds_; }
@@ -45,6 +47,7 @@ class BuiltJob {
   std::vector<Surface> surfaces_;
   Scene scene_;
   std::vector<std::unique_ptr<Evaluator>> evaluators_;
+  std::vector<std::unique_ptr<PatchBrdf>> brdfs_;
 };
 
 /// The densities of a block of traced rows, on their way from all evaluators.
