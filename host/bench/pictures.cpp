@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "host/base/error.h"
 #include "host/base/stopwatch.h"
 #include "host/bench/image_difference.h"
 #include "host/bench/point_samples.h"
@@ -113,17 +112,17 @@ class BruteForce {
   double seconds_a_sample_ = 0, variance_ = 0;
 };
 
-Picture render_with(const Contender& contender, Device& device, const Crop& crop) {
-  const std::unique_ptr<Evaluator> evaluator = make(contender, device, crop.surface);
-  std::vector<float> densities = evaluator->evaluate(crop.queries);  // warm-up
+Picture render_with(const Prepared& prepared, const Crop& crop) {
+  const std::vector<float> densities = prepared.evaluator->evaluate(crop.queries);  // warm-up
   std::vector<double> seconds;
   for (int repeat = 0; repeat < kRepeats; ++repeat) {
     const Stopwatch watch;
-    evaluator->evaluate(crop.queries);
+    prepared.evaluator->evaluate(crop.queries);
     seconds.push_back(watch.seconds());
   }
   std::sort(seconds.begin(), seconds.end());
-  return {contender.evaluator, contender.label, crop.image_of(densities), seconds[seconds.size() / 2]};
+  return {prepared.contender.evaluator, prepared.contender.label, crop.image_of(densities),
+          seconds[seconds.size() / 2]};
 }
 
 }  // namespace
@@ -145,14 +144,11 @@ void render_pictures(int width, const std::vector<int>& elements, Device& device
 
   progress("picture: brute force");
   const BruteForce brute_force(crop, results->reference_picture);
-  for (const Contender& contender : contenders(elements)) {
-    progress("picture: " + contender.label);
-    try {
+  for (const Prepared& prepared : prepare(contenders(elements), device, crop.surface)) {
+    progress("picture: " + prepared.contender.label);
+    if (prepared.evaluator)
       results->pictures.push_back(
-          brute_force.beside(judged(render_with(contender, device, crop), results->reference_picture)));
-    } catch (const UsageError&) {
-      continue;  // does not take this surface
-    }
+          brute_force.beside(judged(render_with(prepared, crop), results->reference_picture)));
   }
 }
 
