@@ -15,7 +15,7 @@ std::string ulp_text(double ulp) {
 }
 
 void print(const HardResult& result) {
-  fmt::print("{:<36} {:<16} {:<13} {:>9} {:>8} {:>8}  {}\n", result.hard_case, result.evaluator,
+  fmt::print("{:<36} {:<20} {:<13} {:>9} {:>8} {:>8}  {}\n", result.hard_case, result.evaluator,
              name_of(result.outcome), result.evaluated, result.compared,
              result.compared ? fmt::format("{:.3f}", result.worst) : "-", result.reason);
 }
@@ -96,7 +96,7 @@ std::vector<HardResult> print_hard_cases(Device* device, std::uint64_t evaluatio
   for (const HardDirections& directions : hard_directions())
     for (const HardResult& result : run_hard_directions(directions, *device, queries))
       results.push_back(result);
-  fmt::print("\n{:<36} {:<16} {:<13} {:>9} {:>8} {:>8}\n", "hard case", "evaluator", "outcome", "answers",
+  fmt::print("\n{:<36} {:<20} {:<13} {:>9} {:>8} {:>8}\n", "hard case", "evaluator", "outcome", "answers",
              "compared", "error");
   for (const HardResult& result : results) print(result);
   fmt::print("{} answers were looked at: finite, not negative, and not above what can be.\n\n",

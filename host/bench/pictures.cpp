@@ -19,11 +19,13 @@ constexpr int kResolution = 512, kSubpixels = 2, kRepeats = 3;
 constexpr double kOracleTolerance = 1e-5;
 constexpr double kMostSampleSeconds = 2;  // that a picture by brute force may take
 
-/// The middle of data/jobs/shell.toml, closer.
-SceneDescription shell_scene() {
+/// A part of data/jobs/shell.toml, at the same size of pixels whatever their number.
+SceneDescription shell_scene(int height) {
+  constexpr double degrees_a_pixel = 0.07;
   SceneDescription scene;
   scene.camera.position = {0, -3.2, 1.4}, scene.camera.look_at = {0.05, 0, 0.42},
-  scene.camera.fov_degrees = 9;
+
+  scene.camera.fov_degrees = degrees_a_pixel * height;
   MaterialDescription material;
   material.name = "shell", material.surface = "nacre", material.repeat = {12, 12}, material.roughness = 0.01;
   material.specular = ConductorFresnel{};
@@ -55,7 +57,7 @@ Crop trace_crop(int width) {
   SpectrumSurface nacre;
   nacre.resolution = kResolution, nacre.rms_slope = 0.3;
   const int height = width * 3 / 4;
-  const Scene scene(shell_scene(), width, height, kSubpixels);
+  const Scene scene(shell_scene(height), width, height, kSubpixels);
   Crop crop{make_surface({"nacre", nacre, Interpolation::bilinear}, nullptr),
             width,
             height,

@@ -123,18 +123,23 @@ const std::vector<HardDirections>& hard_directions() {
 std::vector<HardResult> run_hard_directions(const HardDirections& directions, Device& device, int queries) {
   std::vector<HardResult> results;
   for (const std::string& name : patch_brdf_names()) {
-    HardResult result;
-    result.hard_case = directions.name, result.evaluator = name + " BRDF";
-    for (const Surface& surface : surfaces()) {
-      try {
-        ask(directions, surface, make_patch_brdf(name, device, surface).get(), queries, &result);
-      } catch (const UsageError& error) {
-        result.outcome = Outcome::refused, result.reason = error.what();
-      } catch (const DeviceError& error) {
-        result.outcome = Outcome::broken, result.reason = error.what();
+    for (std::size_t masking = 0; masking < masking_names().size(); ++masking) {
+      PatchBrdfSettings settings;
+      settings.masking = static_cast<Masking>(masking);
+      HardResult result;
+      result.hard_case = directions.name;
+      result.evaluator = fmt::format("{}, {}", name, masking_names()[masking]);
+      for (const Surface& surface : surfaces()) {
+        try {
+          ask(directions, surface, make_patch_brdf(name, device, surface, settings).get(), queries, &result);
+        } catch (const UsageError& error) {
+          result.outcome = Outcome::refused, result.reason = error.what();
+        } catch (const DeviceError& error) {
+          result.outcome = Outcome::broken, result.reason = error.what();
+        }
       }
+      results.push_back(result);
     }
-    results.push_back(result);
   }
   return results;
 }

@@ -16,10 +16,10 @@ struct HardDirections {
 };
 const std::vector<HardDirections>& hard_directions();
 
-/// Asks every patch BRDF of the registry for values, energy and draws: on a noisy map, on flakes and on
-/// normals near the rim, under footprints of 0.3 to 3 texels. Answers have to be finite and not negative, a
-/// patch may not scatter more than it receives, a draw's direction has to be unit and its weight no larger
-/// than a hundred, and where nothing is seen there has to be nothing.
+/// Asks every patch BRDF of the registry, with every masking, for values, energy and draws: on a noisy map,
+/// on flakes and on normals near the rim, under footprints of 0.3 to 3 texels. Answers have to be finite and
+/// not negative, a patch may not scatter more than it receives, a draw's direction has to be unit and its
+/// weight no larger than a hundred, and where nothing is seen there has to be nothing.
 /// @param queries of each kind, surface and BRDF.
 std::vector<HardResult> run_hard_directions(const HardDirections& directions, Device& device, int queries);
 
