@@ -2,12 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "host/base/stopwatch.h"
 #include "host/engine/make_evaluator.h"
-#include "host/engine/make_patch_brdf.h"
 #include "host/engine/ndf_brdf.h"
 
 namespace mica {
@@ -24,38 +22,20 @@ double masking_alpha(const Surface& surface, double roughness) {
   return std::sqrt(slope_variance + 2 * roughness * roughness);
 }
 
-PatchBrdfSettings patch_settings(const EvaluatorDescription& description) {
-  const std::vector<std::string>& maskings = masking_names();
-  PatchBrdfSettings settings;
-  settings.elements = description.elements;
-  settings.masking = static_cast<Masking>(std::find(maskings.begin(), maskings.end(), description.masking) -
-                                          maskings.begin());
-  return settings;
-}
-
 }  // namespace
 
 BuiltJob::BuiltJob(const Job& job, const Plan& plan, Device& device)
     : job_(job), plan_(plan), surfaces_(make_surfaces()), scene_(make_scene()) {
   const Stopwatch watch;
-  for (std::size_t n = 0; n < surfaces_.size(); ++n) build(n, device);
-  build_seconds_ = watch.seconds();
-}
-
-void BuiltJob::build(std::size_t n, Device& device) {
-  const PlannedEvaluator& planned = plan_.evaluators[n];
-  if (planned.is_patch_brdf) {
-    evaluators_.push_back(nullptr);
-    brdfs_.push_back(
-        make_patch_brdf(planned.evaluator, device, surfaces_[n], patch_settings(planned.settings)));
-    return;
+  for (std::size_t n = 0; n < surfaces_.size(); ++n)
+    evaluators_.push_back(make_evaluator(plan.evaluators[n].evaluator, device, surfaces_[n]));
+  for (std::size_t n = 0; n < surfaces_.size() && plan.gathers_light; ++n) {
+    // Of the densities, that of triangles alone is that of the surface's normals, and not an approximation.
+    const auto draws = plan.evaluators[n].evaluator == "triangles" ? NdfBrdf::Draws::surface_normals
+                                                                   : NdfBrdf::Draws::smooth_lobe;
+    brdfs_.push_back(std::make_unique<NdfBrdf>(*evaluators_[n], surfaces_[n], draws));
   }
-  evaluators_.push_back(make_evaluator(planned.evaluator, device, surfaces_[n], planned.settings.elements));
-  // Of the densities, that of triangles alone is that of the surface's normals, and not an approximation.
-  const auto draws =
-      planned.evaluator == "triangles" ? NdfBrdf::Draws::surface_normals : NdfBrdf::Draws::smooth_lobe;
-  brdfs_.push_back(plan_.gathers_light ? std::make_unique<NdfBrdf>(*evaluators_[n], surfaces_[n], draws)
-                                       : nullptr);
+  build_seconds_ = watch.seconds();
 }
 
 std::vector<Surface> BuiltJob::make_surfaces() {
@@ -76,16 +56,14 @@ std::vector<Surface> BuiltJob::make_surfaces() {
 
 Scene BuiltJob::make_scene() {
   const Stopwatch watch;
-  LightGathering gathering;
-  gathering.points = plan_.gathers_light;
   std::vector<double> alphas;
   for (std::size_t n = 0; n < job_.scene.materials.size(); ++n) {
     const int evaluator = plan_.evaluator_of_material[n];
-    gathering.patch_materials.push_back(evaluator >= 0 && plan_.evaluators[evaluator].is_patch_brdf);
     alphas.push_back(evaluator < 0 ? kUnusedAlpha
                                    : masking_alpha(surfaces_[evaluator], job_.scene.materials[n].roughness));
   }
-  Scene scene(job_.scene, job_.image.width, job_.image.height, job_.image.subpixels, alphas, gathering);
+  Scene scene(job_.scene, job_.image.width, job_.image.height, job_.image.subpixels, alphas,
+              {plan_.gathers_light, {}});
   scene_seconds_ = watch.seconds();
   return scene;
 }
@@ -98,15 +76,13 @@ std::vector<const Surface*> BuiltJob::surfaces() const {
 
 std::size_t BuiltJob::device_bytes() const {
   std::size_t bytes = 0;
-  for (std::size_t n = 0; n < evaluators_.size(); ++n)
-    bytes += evaluators_[n] ? evaluators_[n]->device_bytes() : brdfs_[n]->device_bytes();
+  for (const auto& evaluator : evaluators_) bytes += evaluator->device_bytes();
   return bytes;
 }
 
 double BuiltJob::device_seconds() const {
   double seconds = 0;
-  for (std::size_t n = 0; n < evaluators_.size(); ++n)
-    seconds += evaluators_[n] ? evaluators_[n]->device_seconds() : brdfs_[n]->device_seconds();
+  for (const auto& evaluator : evaluators_) seconds += evaluator->device_seconds();
   return seconds;
 }
 

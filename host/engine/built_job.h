@@ -23,11 +23,9 @@ class BuiltJob {
   const Job& job() const { return job_; }
   const Plan& plan() const { return plan_; }
   const Scene& scene() const { return scene_; }
-  Evaluator& evaluator(std::size_t n) const {
-    return *evaluators_[n];
-  }                                                            ///< by PlannedEvaluator; none of a PatchBrdf
-  PatchBrdf& brdf(std::size_t n) const { return *brdfs_[n]; }  ///< the same; if light is gathered
-  std::vector<const Surface*> surfaces() const;                ///< by PlannedEvaluator
+  Evaluator& evaluator(std::size_t n) const { return *evaluators_[n]; }  ///< by PlannedEvaluator
+  PatchBrdf& brdf(std::size_t n) const { return *brdfs_[n]; }            ///< the same; if light is gathered
+  std::vector<const Surface*> surfaces() const;                          ///< by PlannedEvaluator
 
   double surface_seconds() const { return surface_seconds_; }
   double scene_seconds() const { return scene_seconds_; }
@@ -39,7 +37,6 @@ class BuiltJob {
   const std::vector<std::string>& warnings() const { return warnings_; }  ///< of the surfaces
 
  private:
-  void build(std::size_t n, Device& device);
   std::vector<Surface> make_surfaces();
   Scene make_scene();
 

@@ -6,10 +6,7 @@
 #include <algorithm>
 #include <set>
 
-#include "host/build/lobes.h"
 #include "host/build/map_structure.h"
-#include "host/build/mixture.h"
-#include "host/engine/make_patch_brdf.h"
 #include "host/scene/scene.h"
 #include "host/surface/map_size.h"
 #include "kernels/types.h"
@@ -32,33 +29,19 @@ const char* name_of(Interpolation interpolation) {
   return "";
 }
 
-bool is_patch_brdf(const std::string& evaluator) {
-  const std::vector<std::string>& names = patch_brdf_names();
-  return std::find(names.begin(), names.end(), evaluator) != names.end();
-}
-
-std::size_t structure_bytes(const MaterialDescription& material, const MapSize& size) {
-  if (material.ndf == "gaussians") return gaussian_mixture_bytes(size.width, size.height);
-  if (material.ndf == "beckmanns")
-    return lobe_structure_bytes(size.width, size.height, material.evaluator.elements);
-  return map_structure_bytes(size.width, size.height);
-}
-
-PlannedEvaluator plan_evaluator(const Job& job, int surface_index, const MaterialDescription& material) {
+PlannedEvaluator plan_evaluator(const Job& job, int surface_index, const std::string& evaluator) {
   const SurfaceDescription& surface = job.surfaces[surface_index];
   const MapSize size = map_size(surface);
   PlannedEvaluator planned;
   planned.surface = surface.name;
-  planned.evaluator = material.ndf;
+  planned.evaluator = evaluator;
   planned.surface_index = surface_index;
   planned.width = size.width, planned.height = size.height;
   planned.interpolation = surface.interpolation;
   planned.kernel =
-      fmt::format("{}.cl -DMICA_INTERPOLATION={}", material.ndf, static_cast<int>(surface.interpolation));
+      fmt::format("{}.cl -DMICA_INTERPOLATION={}", evaluator, static_cast<int>(surface.interpolation));
   planned.host_bytes = sizeof(Eigen::Vector2d) * size.width * size.height;
-  planned.settings = material.evaluator;
-  planned.is_patch_brdf = is_patch_brdf(material.ndf);
-  planned.device_bytes = structure_bytes(material, size);
+  planned.device_bytes = map_structure_bytes(size.width, size.height);
   return planned;
 }
 
@@ -69,11 +52,10 @@ int evaluator_for(const Job& job, const MaterialDescription& material,
                                     [&](const SurfaceDescription& s) { return s.name == material.surface; });
   const int surface_index = static_cast<int>(surface - job.surfaces.begin());
   const auto found = std::find_if(planned->begin(), planned->end(), [&](const PlannedEvaluator& p) {
-    return p.surface_index == surface_index && p.evaluator == material.ndf &&
-           p.settings == material.evaluator;
+    return p.surface_index == surface_index && p.evaluator == material.ndf;
   });
   const int index = static_cast<int>(found - planned->begin());
-  if (found == planned->end()) planned->push_back(plan_evaluator(job, surface_index, material));
+  if (found == planned->end()) planned->push_back(plan_evaluator(job, surface_index, material.ndf));
   (*planned)[index].materials.push_back(material.name);
   return index;
 }

@@ -19,8 +19,6 @@ struct PlannedEvaluator {
   std::size_t host_bytes = 0;  ///< of the surface
   std::size_t device_bytes = 0;
   std::vector<std::string> materials;  ///< that use it
-  EvaluatorDescription settings = {};
-  bool is_patch_brdf = false;  ///< a PatchBrdf of its own instead of a P-NDF
 };
 
 /// Which draws of directions estimate the light from all around; either alone is right too, and noisier.
@@ -32,7 +30,7 @@ struct Plan {
   std::vector<int> evaluator_of_material;  ///< by index of SceneDescription::materials; -1: not used
   std::vector<std::string> channels;       ///< of the image, in order
   bool gathers_light = false;              ///< from all around: `samples` a footprint
-  int samples = 0, max_bounces = 1;        ///< as the job asks for
+  int samples = 0, max_bounces = 1;              ///< as the job asks for
   Techniques techniques = Techniques::both;
   int rows_a_block = 0;                          ///< image rows that are traced and evaluated together
   std::size_t queries_a_batch = 0;               ///< of one kernel launch, at most

@@ -47,9 +47,9 @@ CoatDescription read_coat(TableReader& table) {
 }
 
 void read_evaluator(TableReader& material, std::string& ndf) {
-  const std::vector<std::string_view> available = {"triangles", "gaussians", "beckmanns"};
-  const std::vector<std::string_view> planned = {"auto",   "cavities", "grid",
-                                                 "smooth", "pyramid",  "reference"};
+  const std::vector<std::string_view> available = {"triangles"};
+  const std::vector<std::string_view> planned = {"auto", "gaussians", "beckmanns", "cavities",
+                                                 "grid", "smooth",    "pyramid",   "reference"};
   std::string word = ndf;
   material.read("ndf", word);
   if (std::find(available.begin(), available.end(), word) != available.end()) {
@@ -61,19 +61,6 @@ void read_evaluator(TableReader& material, std::string& ndf) {
                   fmt::format("found {}{}; expected an evaluator that is available: {}{}", in_quotes(word),
                               is_planned ? ", which is not available in this version" : "", joined(available),
                               did_you_mean(word, available)));
-}
-
-void read_elements(TableReader& material, int& elements) {
-  material.read("elements", elements, closed(1, 4));
-  if (elements == 3) material.report("elements", "found 3; expected 1, 2 or 4");
-}
-
-void read_evaluator_settings(TableReader& material, const std::string& ndf, EvaluatorDescription& evaluator) {
-  if (ndf == "gaussians" || ndf == "beckmanns") read_elements(material, evaluator.elements);
-  if (ndf == "beckmanns")
-    material.read(
-        "masking", evaluator.masking,
-        Choices<std::string>{{"exact", "exact"}, {"filtered", "filtered"}, {"geometric", "geometric"}});
 }
 
 }  // namespace
@@ -91,7 +78,6 @@ std::vector<MaterialDescription> read_materials(TableReader& job,
     table.read_reference("surface", material.surface, "surface", surface_names);
     table.read("repeat", material.repeat, open_low(0, 1e6));
     read_evaluator(table, material.ndf);
-    read_evaluator_settings(table, material.ndf, material.evaluator);
     table.read("roughness", material.roughness, closed(1e-4, 1));
     table.read_table("specular", [&](TableReader& specular) { material.specular = read_specular(specular); });
     table.read("diffuse", material.diffuse, reflectance);

@@ -37,16 +37,6 @@ struct CoatDescription {
   double roughness = 0.02;  ///< standard deviation of its own slopes an axis; 1e-3..1
 };
 
-/// What evaluators of some kinds can be told; the others ignore it.
-struct EvaluatorDescription {
-  int elements = 1;               ///< of gaussians, beckmanns and cavities, a texel and axis: 1, 2 or 4
-  std::string masking = "exact";  ///< of beckmanns: exact, filtered or geometric
-
-  bool operator==(const EvaluatorDescription& other) const {
-    return elements == other.elements && masking == other.masking;
-  }
-};
-
 /// `[material.NAME]`
 struct MaterialDescription {
   std::string name;
@@ -57,7 +47,6 @@ struct MaterialDescription {
   Fresnel specular = ColorFresnel{};
   Color diffuse{0, 0, 0};  ///< Lambertian albedo
   std::optional<CoatDescription> coat = {};
-  EvaluatorDescription evaluator = {};
 };
 
 struct PlaneShape {  ///< square of the plane z = height, uv over its sides

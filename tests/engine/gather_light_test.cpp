@@ -181,39 +181,6 @@ TEST(GatherLight, WhiteUnderACoatLosesNothing) {
   expect_mean(render_job(job, Techniques::both), Color::Ones(), 1e-3);  // the coat's Smith masking
 }
 
-TEST(GatherLight, PatchBrdfInAFurnaceShowsItsEnergy) {
-  const std::string material =
-      "surface = \"noise\"\nndf = \"beckmanns\"\nmasking = \"filtered\"\nroughness = 0.05\nrepeat = [40, "
-      "40]\n";
-  const std::string path = plane_job(material, "[[light]]\ntype = \"furnace\"\n", 0.02, "samples = 128");
-  const Job job = load_job(path, {});
-  const Plan plan = make_plan(job);
-  ASSERT_TRUE(plan.evaluators[0].is_patch_brdf);
-  Device device(0);
-  const BuiltJob built(job, plan, device);
-  const TracedRows rows = built.scene().trace(0, 24);
-  std::vector<ViewQuery> views;
-  for (const LitPoint& point : rows.points)
-    views.push_back({point.footprint, point.frame.to_local(point.to_eye), 0.05});
-  ASSERT_EQ(views.size(), 576u);
-  double expected = 0;
-  for (const Albedo& albedo : built.brdf(0).energy(views)) expected += albedo.single / 576;
-  EXPECT_GT(expected, 0.8);
-  for (const Techniques techniques : {Techniques::both, Techniques::lights, Techniques::brdf})
-    expect_mean(render_job(path, techniques), Color::Constant(expected), 5e-3);  // of energy's quadrature
-}
-
-TEST(GatherLight, PatchBrdfIsLitByLamps) {
-  const std::string material =
-      "surface = \"flat\"\nroughness = 0.1\nspecular = { color = [0.9, 0.6, 0.3] }\n";
-  const std::string lamp = "[[light]]\ntype = \"directional\"\ndirection = [0.1, 1, -0.6]\n";
-  const Image smith = render_job(plane_job(material, lamp, 0.05), Techniques::both);
-  const Image patch = render_job(plane_job(material + "ndf = \"beckmanns\"\n", lamp, 0.05), Techniques::both);
-  // A flat map has one lobe: on slopes where the other is on the disk, which differ by tan^2 / 2 of 0.1 rad.
-  for (int channel = 0; channel < 3; ++channel)
-    EXPECT_NEAR(mean_of(patch, channel).mean / mean_of(smith, channel).mean, 1, 0.08);
-}
-
 TEST(GatherLight, IsTheSameForAnyBatchAndThreadCount) {
   const std::string material =
       "surface = \"noise\"\nroughness = 0.02\nrepeat = [9, 9]\ndiffuse = [0.1, 0.1, 0.1]\n";
