@@ -92,7 +92,7 @@ std::vector<HardResult> print_hard_cases(Device* device, std::uint64_t evaluatio
     for (const HardResult& result : run_hard_case(hard_case, *device, {})) results.push_back(result);
   }
   if (evaluations > 0) ask_more(device, evaluations, &results);
-  constexpr int queries = 300;
+  constexpr int queries = 100;
   for (const HardDirections& directions : hard_directions())
     for (const HardResult& result : run_hard_directions(directions, *device, queries))
       results.push_back(result);

