@@ -27,7 +27,8 @@ BuiltJob::BuiltJob(const Job& job, const Plan& plan, Device& device)
     : job_(job), plan_(plan), surfaces_(make_surfaces()), scene_(make_scene()) {
   const Stopwatch watch;
   for (std::size_t n = 0; n < surfaces_.size(); ++n)
-    evaluators_.push_back(make_evaluator(plan.evaluators[n].evaluator, device, surfaces_[n]));
+    evaluators_.push_back(
+        make_evaluator(plan.evaluators[n].evaluator, device, surfaces_[n], plan.evaluators[n].elements));
   build_seconds_ = watch.seconds();
 }
 

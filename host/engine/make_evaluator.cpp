@@ -6,12 +6,13 @@
 #include "host/base/error.h"
 #include "host/engine/beckmann_evaluator.h"
 #include "host/engine/mixture_evaluator.h"
+#include "host/engine/smooth_evaluator.h"
 #include "host/engine/triangle_evaluator.h"
 
 namespace mica {
 
 const std::vector<std::string>& evaluator_names() {
-  static const std::vector<std::string> names = {"triangles", "gaussians", "beckmanns"};
+  static const std::vector<std::string> names = {"triangles", "gaussians", "beckmanns", "smooth"};
   return names;
 }
 
@@ -22,6 +23,7 @@ std::unique_ptr<Evaluator> make_evaluator(const std::string& name, Device& devic
   mixture.elements = elements;
   if (name == "gaussians") return std::make_unique<GaussianEvaluator>(device, surface, mixture);
   if (name == "beckmanns") return std::make_unique<BeckmannEvaluator>(device, surface, mixture);
+  if (name == "smooth") return std::make_unique<SmoothEvaluator>(device, surface, mixture);
   throw UsageError(
       fmt::format("there is no evaluator \"{}\"; available: {}", name, fmt::join(evaluator_names(), ", ")));
 }

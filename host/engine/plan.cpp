@@ -6,7 +6,10 @@
 #include <algorithm>
 #include <set>
 
+#include "host/build/lobes.h"
 #include "host/build/map_structure.h"
+#include "host/build/mixture.h"
+#include "host/build/slope_pyramid.h"
 #include "host/scene/scene.h"
 #include "host/surface/map_size.h"
 #include "kernels/types.h"
@@ -29,19 +32,33 @@ const char* name_of(Interpolation interpolation) {
   return "";
 }
 
-PlannedEvaluator plan_evaluator(const Job& job, int surface_index, const std::string& evaluator) {
+/// What the evaluator takes on the device, and its kernel.
+void plan_structure(PlannedEvaluator* planned) {
+  const int width = planned->width, height = planned->height, elements = planned->elements;
+  planned->kernel = planned->evaluator + ".cl";
+  if (planned->evaluator == "beckmanns") {
+    planned->device_bytes = lobe_structure_bytes(width, height, elements);
+  } else if (planned->evaluator == "smooth") {
+    planned->device_bytes = slope_pyramid_bytes(width * elements, height * elements, true);
+  } else {
+    planned->device_bytes = planned->evaluator == "gaussians" ? gaussian_mixture_bytes(width, height)
+                                                              : map_structure_bytes(width, height);
+    planned->kernel += fmt::format(" -DMICA_INTERPOLATION={}", static_cast<int>(planned->interpolation));
+  }
+}
+
+PlannedEvaluator plan_evaluator(const Job& job, int surface_index, const MaterialDescription& material) {
   const SurfaceDescription& surface = job.surfaces[surface_index];
   const MapSize size = map_size(surface);
   PlannedEvaluator planned;
   planned.surface = surface.name;
-  planned.evaluator = evaluator;
+  planned.evaluator = material.ndf;
+  planned.elements = material.elements, planned.masking = material.masking;
   planned.surface_index = surface_index;
   planned.width = size.width, planned.height = size.height;
   planned.interpolation = surface.interpolation;
-  planned.kernel =
-      fmt::format("{}.cl -DMICA_INTERPOLATION={}", evaluator, static_cast<int>(surface.interpolation));
   planned.host_bytes = sizeof(Eigen::Vector2d) * size.width * size.height;
-  planned.device_bytes = map_structure_bytes(size.width, size.height);
+  plan_structure(&planned);
   return planned;
 }
 
@@ -52,10 +69,11 @@ int evaluator_for(const Job& job, const MaterialDescription& material,
                                     [&](const SurfaceDescription& s) { return s.name == material.surface; });
   const int surface_index = static_cast<int>(surface - job.surfaces.begin());
   const auto found = std::find_if(planned->begin(), planned->end(), [&](const PlannedEvaluator& p) {
-    return p.surface_index == surface_index && p.evaluator == material.ndf;
+    return p.surface_index == surface_index && p.evaluator == material.ndf &&
+           p.elements == material.elements && p.masking == material.masking;
   });
   const int index = static_cast<int>(found - planned->begin());
-  if (found == planned->end()) planned->push_back(plan_evaluator(job, surface_index, material.ndf));
+  if (found == planned->end()) planned->push_back(plan_evaluator(job, surface_index, material));
   (*planned)[index].materials.push_back(material.name);
   return index;
 }

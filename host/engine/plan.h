@@ -13,6 +13,8 @@ struct PlannedEvaluator {
   std::string surface;    ///< name in the job
   std::string evaluator;  ///< e.g. "triangles"
   int surface_index = 0;  ///< into Job::surfaces
+  int elements = 1;       ///< of a mixture, a texel and axis
+  Masking masking = Masking::exact;
   int width = 0, height = 0;
   Interpolation interpolation = Interpolation::bilinear;
   std::string kernel;          ///< file and options
