@@ -6,6 +6,7 @@
 
 #include "host/device/device.h"
 #include "host/engine/evaluator.h"
+#include "host/engine/patch_brdf.h"
 #include "host/engine/plan.h"
 #include "host/job/job.h"
 #include "host/scene/scene.h"
@@ -22,8 +23,11 @@ class BuiltJob {
   const Job& job() const { return job_; }
   const Plan& plan() const { return plan_; }
   const Scene& scene() const { return scene_; }
-  Evaluator& evaluator(std::size_t n) const { return *evaluators_[n]; }  ///< by PlannedEvaluator
-  std::vector<const Surface*> surfaces() const;                          ///< by PlannedEvaluator
+  /// By PlannedEvaluator; only one that asks for densities.
+  Evaluator& evaluator(std::size_t n) const { return *evaluators_[n]; }
+  /// By PlannedEvaluator; of one that is a patch BRDF, and of all when light is gathered.
+  PatchBrdf& brdf(std::size_t n) const { return *brdfs_[n]; }
+  std::vector<const Surface*> surfaces() const;  ///< by PlannedEvaluator
 
   double surface_seconds() const { return surface_seconds_; }
   double scene_seconds() const { return scene_seconds_; }
@@ -36,6 +40,7 @@ class BuiltJob {
 
  private:
   std::vector<Surface> make_surfaces();
+  void build(std::size_t n, Device& device);
   Scene make_scene();
 
   const Job& job_;
@@ -45,6 +50,7 @@ class BuiltJob {
   std::vector<Surface> surfaces_;
   Scene scene_;
   std::vector<std::unique_ptr<Evaluator>> evaluators_;
+  std::vector<std::unique_ptr<PatchBrdf>> brdfs_;
 };
 
 /// The densities of a block of traced rows, on their way from all evaluators.

@@ -10,6 +10,7 @@
 #include "host/build/map_structure.h"
 #include "host/build/mixture.h"
 #include "host/build/slope_pyramid.h"
+#include "host/engine/make_patch_brdf.h"
 #include "host/scene/scene.h"
 #include "host/surface/map_size.h"
 #include "kernels/types.h"
@@ -37,7 +38,12 @@ void plan_structure(PlannedEvaluator* planned) {
   const int width = planned->width, height = planned->height, elements = planned->elements;
   planned->kernel = planned->evaluator + ".cl";
   if (planned->evaluator == "beckmanns") {
-    planned->device_bytes = lobe_structure_bytes(width, height, elements);
+    const std::size_t lobes = lobe_structure_bytes(width, height, elements);
+    planned->device_bytes = (planned->asks_densities ? 2 : 1) * lobes;
+    if (planned->masking != Masking::geometric) {
+      planned->device_bytes += slope_pyramid_bytes(width * elements, height * elements, false);
+      planned->kernel = "beckmann_patches.cl";
+    }
   } else if (planned->evaluator == "smooth") {
     planned->device_bytes = slope_pyramid_bytes(width * elements, height * elements, true);
   } else {
@@ -54,11 +60,12 @@ PlannedEvaluator plan_evaluator(const Job& job, int surface_index, const Materia
   planned.surface = surface.name;
   planned.evaluator = material.ndf;
   planned.elements = material.elements, planned.masking = material.masking;
+  const std::vector<std::string>& patches = patch_brdf_names();
+  planned.patch_brdf = std::find(patches.begin(), patches.end(), material.ndf) != patches.end();
   planned.surface_index = surface_index;
   planned.width = size.width, planned.height = size.height;
   planned.interpolation = surface.interpolation;
   planned.host_bytes = sizeof(Eigen::Vector2d) * size.width * size.height;
-  plan_structure(&planned);
   return planned;
 }
 
@@ -74,7 +81,9 @@ int evaluator_for(const Job& job, const MaterialDescription& material,
   });
   const int index = static_cast<int>(found - planned->begin());
   if (found == planned->end()) planned->push_back(plan_evaluator(job, surface_index, material));
-  (*planned)[index].materials.push_back(material.name);
+  PlannedEvaluator& used = (*planned)[index];
+  used.materials.push_back(material.name);
+  used.asks_densities |= !used.patch_brdf || material.coat.has_value();
   return index;
 }
 
@@ -100,6 +109,8 @@ double mebibytes(std::size_t bytes) {
 
 Plan make_plan(const Job& job) {
   Plan plan;
+  plan.gathers_light = !job.scene.environments.empty() || job.image.max_bounces > 1;
+  if (plan.gathers_light) plan.samples = job.image.samples, plan.max_bounces = job.image.max_bounces;
   std::set<std::string> used;
   for (const ShapeDescription& shape : job.scene.shapes) {
     used.insert(shape.material);
@@ -112,12 +123,14 @@ Plan make_plan(const Job& job) {
   plan.channels = channels_for(job.image.aovs);
   plan.queries_a_batch = kQueriesABatch;
   const std::size_t queries_a_row = static_cast<std::size_t>(job.image.width) * job.image.subpixels *
-                                    job.image.subpixels * std::max<std::size_t>(job.scene.lights.size(), 1);
+                                    job.image.subpixels *
+                                    std::max<std::size_t>(job.scene.lights.size() + 2 * plan.samples, 1);
   plan.rows_a_block =
       static_cast<int>(std::clamp<std::size_t>(kQueriesABatch / queries_a_row, 1, job.image.height));
 
   const std::size_t block = plan.rows_a_block * queries_a_row;
-  for (const PlannedEvaluator& evaluator : plan.evaluators) {
+  for (PlannedEvaluator& evaluator : plan.evaluators) {
+    plan_structure(&evaluator);
     plan.host_bytes += evaluator.host_bytes;
     plan.device_bytes += evaluator.device_bytes;
   }
@@ -136,6 +149,11 @@ std::string describe(const Plan& plan) {
                         e.evaluator, e.surface, e.width, e.height, name_of(e.interpolation),
                         fmt::join(e.materials, ", "), mebibytes(e.device_bytes), e.kernel);
   }
+  if (plan.gathers_light)
+    text += fmt::format(
+        "light from all around: 2 x {} directions a footprint, by the light and by the material, up to "
+        "{} bounces\n",
+        plan.samples, plan.max_bounces);
   text += fmt::format("channels {}\n", fmt::join(plan.channels, " "));
   text += fmt::format("blocks of {} rows, batches of at most {} queries\n", plan.rows_a_block,
                       plan.queries_a_batch);
