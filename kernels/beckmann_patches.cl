@@ -29,6 +29,7 @@
 typedef struct {
   wave_float density, view, light, projected;
   int all;  // lobes are visited
+  uint dense, turned;  // the leaves, of the tile that is visited, that matter to the density and to the areas
 } leaf_results;
 
 // Lanes of the children with lobes that do not face direction (o_x, o_y, o_z) as a whole.
@@ -45,16 +46,21 @@ static inline wave_int turn_away(global const mica_lobe_query* query, const priv
   return wave_mask(facing * facing <= FACING_DEVIATIONS * FACING_DEVIATIONS * stretch * variance);
 }
 
-static inline uint surviving_lobes(global const mica_patch_query* query, const private leaf_results* results,
+static inline uint surviving_lobes(global const mica_patch_query* query, private leaf_results* results,
                                    global const short* node, int i, int j, int child_size, WAVE_SHARED int* scratch) {
   const lobe_children c = load_children(&query->lobe, node, i, j, child_size);
   const wave_int near = c.present & wave_mask(c.q_position <= query->lobe.map.cutoff);
-  if (results->all) return wave_ballot(near, scratch);
-  wave_int survives = matter_to_density(&query->lobe, &c);
-  if (MICA_MASKING == 2)
-    survives |= near & (turn_away(&query->lobe, &c, query->view_x, query->view_y, query->view_z) |
-                        turn_away(&query->lobe, &c, query->light_x, query->light_y, query->light_z));
-  return wave_ballot(survives, scratch);
+  results->dense = wave_ballot(matter_to_density(&query->lobe, &c), scratch);
+  results->turned = 0;
+  if (results->all) {
+    results->turned = wave_ballot(near, scratch);
+  } else if (MICA_MASKING == 2) {
+    results->turned =
+        wave_ballot(near & (turn_away(&query->lobe, &c, query->view_x, query->view_y, query->view_z) |
+                            turn_away(&query->lobe, &c, query->light_x, query->light_y, query->light_z)),
+                    scratch);
+  }
+  return results->dense | results->turned;
 }
 
 // Areas of lobes that a direction sees, and projected areas of their mean normals; both less the part that is linear in the
@@ -73,14 +79,16 @@ static inline wave_float lobe_areas(const private lobe_leaf* lobes, float roughn
   return all ? max(m + hidden, 0.0f) : hidden;
 }
 
-static inline void take_lobes(global const mica_patch_query* query, global const short* leaves, int leaf, int i, int j,
-                              int room_i, int room_j, private leaf_results* results) {
+// @param child of the leaf, in its tile.
+static inline void take_lobes(global const mica_patch_query* query, global const short* leaves, int leaf, int child, int i,
+                              int j, int room_i, int room_j, private leaf_results* results) {
   lobe_leaf lobes = load_lobes(leaves + leaf * MICA_LOBE_LEAF, query->lobe.map.inverse_roughness);
   const wave_float q_position = lobe_positions(&query->lobe.map, i, j);
   const wave_int inside_map = wave_mask((WAVE_LANE & 3) < room_i) & wave_mask((WAVE_LANE >> 2) < room_j);
   const wave_float nothing = 0.0f;
-  results->density += wave_select(nothing, lobe_densities(&query->lobe, &lobes, q_position), inside_map);
-  if (MICA_MASKING == 1 && !results->all) return;
+  if ((results->dense >> child) & 1)
+    results->density += wave_select(nothing, lobe_densities(&query->lobe, &lobes, q_position), inside_map);
+  if (!((results->turned >> child) & 1)) return;
   const float roughness = 1.0f / query->lobe.map.inverse_roughness;
   lobes.spread_xx *= roughness, lobes.spread_yx *= roughness, lobes.spread_yy *= roughness;
   const wave_float weight =
@@ -103,8 +111,8 @@ static inline void take_lobes(global const mica_patch_query* query, global const
 #define LEAF_AT(leaf_i, leaf_j) ((block.index * 16 + tile) * 16 + leaf)
 #define LEAF_SURVIVORS(query, node, i, j, child_size, scratch) \
   surviving_lobes(query, results, node, i, j, child_size, scratch)
-#define LEAF_TAKE(query, lobes, leaf, i, j, room_i, room_j, results, scratch) \
-  take_lobes(query, lobes, leaf, i, j, room_i, room_j, results)
+#define LEAF_TAKE(query, lobes, at, i, j, room_i, room_j, results, scratch) \
+  take_lobes(query, lobes, at, leaf, i, j, room_i, room_j, results)
 #include "walk_leaves.h"
 
 // o_z - p.o_xy of the mean slope.
@@ -135,7 +143,7 @@ kernel void beckmann_patches(global const mica_patch_query* restrict queries, in
   if (WAVE_ITEM_INDEX >= query_count) return;
   global const mica_patch_query* query = queries + WAVE_ITEM_INDEX;
   const wave_float nothing = 0.0f;
-  leaf_results results = {nothing, nothing, nothing, nothing, query->slopes.offset < 0};
+  leaf_results results = {nothing, nothing, nothing, nothing, query->slopes.offset < 0, 0u, 0u};
   float view = 0.0f, light = 0.0f, projected = 0.0f;
   if (!results.all) {
     slope_lobe lobe = footprint_slopes(&query->slopes, pyramid, scratch);
