@@ -12,6 +12,8 @@ namespace {
 using device_types::mica_lobe_query;
 using device_types::mica_map_query;
 using device_types::mica_mixture_query;
+using device_types::mica_patch_query;
+using device_types::mica_smooth_query;
 
 constexpr std::size_t kWaveLanes = 16;
 constexpr std::size_t kCpuGroup = 16;  // queries a work-group on a CPU
@@ -31,6 +33,12 @@ mica_map_query& place_of(mica_mixture_query& query) {
   return query.map;
 }
 mica_map_query& place_of(mica_lobe_query& query) {
+  return query.map;
+}
+mica_map_query& place_of(mica_patch_query& query) {
+  return query.lobe.map;
+}
+mica_map_query& place_of(mica_smooth_query& query) {
   return query.map;
 }
 
@@ -184,5 +192,7 @@ void MapBatches<DeviceQuery>::enqueue(std::size_t first, Densities* pending) {
 template class MapBatches<mica_map_query>;
 template class MapBatches<mica_mixture_query>;
 template class MapBatches<mica_lobe_query>;
+template class MapBatches<mica_patch_query>;
+template class MapBatches<mica_smooth_query>;
 
 }  // namespace mica

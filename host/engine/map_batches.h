@@ -55,5 +55,7 @@ class MapBatches {
 extern template class MapBatches<device_types::mica_map_query>;
 extern template class MapBatches<device_types::mica_mixture_query>;
 extern template class MapBatches<device_types::mica_lobe_query>;
+extern template class MapBatches<device_types::mica_patch_query>;
+extern template class MapBatches<device_types::mica_smooth_query>;
 
 }  // namespace mica

@@ -8,6 +8,8 @@ namespace mica {
 namespace {
 
 const Interval reflectance = closed(0, 1);
+const Choices<Masking> maskings = {
+    {"exact", Masking::exact}, {"filtered", Masking::filtered}, {"geometric", Masking::geometric}};
 
 Fresnel read_conductor(TableReader& specular) {
   ConductorFresnel conductor;
@@ -47,9 +49,8 @@ CoatDescription read_coat(TableReader& table) {
 }
 
 void read_evaluator(TableReader& material, std::string& ndf) {
-  const std::vector<std::string_view> available = {"triangles"};
-  const std::vector<std::string_view> planned = {"auto", "gaussians", "beckmanns", "cavities",
-                                                 "grid", "smooth",    "pyramid",   "reference"};
+  const std::vector<std::string_view> available = {"triangles", "gaussians", "beckmanns", "smooth"};
+  const std::vector<std::string_view> planned = {"auto", "cavities", "grid", "pyramid", "reference"};
   std::string word = ndf;
   material.read("ndf", word);
   if (std::find(available.begin(), available.end(), word) != available.end()) {
@@ -61,6 +62,18 @@ void read_evaluator(TableReader& material, std::string& ndf) {
                   fmt::format("found {}{}; expected an evaluator that is available: {}{}", in_quotes(word),
                               is_planned ? ", which is not available in this version" : "", joined(available),
                               did_you_mean(word, available)));
+}
+
+/// Mixtures have no lobes for Catmull-Rom patches.
+void refuse_bicubic(TableReader& table, const MaterialDescription& material,
+                    const std::vector<SurfaceDescription>& surfaces) {
+  if (material.ndf == "triangles") return;
+  for (const SurfaceDescription& surface : surfaces)
+    if (surface.name == material.surface && surface.interpolation == Interpolation::bicubic)
+      table.report("ndf",
+                   fmt::format("found {} on surface {}, which is bicubic; expected a nearest or bilinear "
+                               "surface, or triangles",
+                               in_quotes(material.ndf), in_quotes(surface.name)));
 }
 
 }  // namespace
@@ -78,6 +91,9 @@ std::vector<MaterialDescription> read_materials(TableReader& job,
     table.read_reference("surface", material.surface, "surface", surface_names);
     table.read("repeat", material.repeat, open_low(0, 1e6));
     read_evaluator(table, material.ndf);
+    refuse_bicubic(table, material, surfaces);
+    table.read("masking", material.masking, maskings);
+    table.read("elements", material.elements, closed(1, 4));
     table.read("roughness", material.roughness, closed(1e-4, 1));
     table.read_table("specular", [&](TableReader& specular) { material.specular = read_specular(specular); });
     table.read("diffuse", material.diffuse, reflectance);

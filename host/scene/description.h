@@ -6,6 +6,8 @@
 #include <variant>
 #include <vector>
 
+#include "host/base/masking.h"
+
 namespace mica {
 
 /// Linear RGB, or any per-channel triple.
@@ -40,10 +42,12 @@ struct CoatDescription {
 /// `[material.NAME]`
 struct MaterialDescription {
   std::string name;
-  std::string surface;            ///< name of a surface
-  Eigen::Vector2d repeat{1, 1};   ///< map periods over the shape's uv
-  std::string ndf = "triangles";  ///< evaluator
-  double roughness = 0.01;        ///< sigma_r on the disk
+  std::string surface;               ///< name of a surface
+  Eigen::Vector2d repeat{1, 1};      ///< map periods over the shape's uv
+  std::string ndf = "triangles";     ///< evaluator
+  Masking masking = Masking::exact;  ///< of an evaluator with a BRDF of its own
+  int elements = 1;                  ///< of a mixture, a texel and axis
+  double roughness = 0.01;           ///< sigma_r on the disk
   Fresnel specular = ColorFresnel{};
   Color diffuse{0, 0, 0};  ///< Lambertian albedo
   std::optional<CoatDescription> coat = {};
