@@ -119,7 +119,9 @@ TEST(PatchBrdf, WhiteFurnaceLosesAndNeverGains) {
                   approximate);
       EXPECT_LE(energy, 1 + 1e-3);
       EXPECT_GT(energy, 0.4);
-      if (degrees <= 75) EXPECT_NEAR(approximate, energy, 0.05);
+      if (degrees <= 75) {
+        EXPECT_NEAR(approximate, energy, 0.05);
+      }
       const Albedo albedo = exact->energy({{whole_map(), view, roughness}})[0];
       EXPECT_NEAR(albedo.single, energy, 0.01);
       EXPECT_NEAR(albedo.single + albedo.lost, 1, 1e-3);
