@@ -6,8 +6,8 @@
 
 namespace mica {
 
-/// Adds to `rows->radiance` what the materials reflect of the light from all around and of other surfaces, and
-/// empties `rows->points`.
+/// Adds to `rows->radiance` what the materials reflect of the light from all around and of other surfaces,
+/// and empties `rows->points`.
 ///
 /// At each footprint ImageSettings::samples directions are drawn by where the light comes from, and as many
 /// by where the material reflects it to; both estimate the same integral, and each is weighted by its share

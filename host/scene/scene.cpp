@@ -13,6 +13,7 @@
 #include "host/scene/background.h"
 #include "host/scene/camera.h"
 #include "host/scene/coat.h"
+#include "host/scene/coat_crossing.h"
 #include "host/scene/footprint.h"
 #include "host/scene/geometry.h"
 #include "host/scene/lobes.h"
@@ -251,6 +252,9 @@ const std::vector<MaterialDescription>& Scene::materials() const {
 std::uint32_t Scene::material_of(const Hit& hit) const {
   return implementation_->shared->part_materials[hit.shape][hit.part];
 }
+const std::optional<CoatInterface>& Scene::coat(std::uint32_t material) const {
+  return implementation_->shared->coats[material];
+}
 double Scene::masking_alpha(std::uint32_t material) const {
   return implementation_->masking_alpha[material];
 }
@@ -258,11 +262,12 @@ double Scene::masking_alpha(std::uint32_t material) const {
 LitBrdf Scene::Implementation::lit_brdf(const GlintQuery& query, const LitPoint& point,
                                         const Illumination& incident) const {
   LitBrdf lit;
-  lit.query = {query.query.footprint, point.frame.to_local(point.to_eye),
-               point.frame.to_local(incident.direction), query.query.roughness};
+  const Eigen::Vector3d light = point.frame.to_local(incident.direction);
+  const CoatCrossing crossing(shared->coats[query.material], point.frame.to_local(point.to_eye));
+  lit.query = {query.query.footprint, crossing.view_below(), crossing.below(light), query.query.roughness};
   lit.pixel = query.pixel;
   lit.material = query.material;
-  const Color irradiance = incident.irradiance / (subpixels * subpixels);
+  const Color irradiance = incident.irradiance * (crossing.value_scale(light) / (subpixels * subpixels));
   const BounceFresnel fresnel(shared->materials[query.material].specular, lit.query.view, lit.query.light);
   lit.weight_single = fresnel.single.cwiseProduct(irradiance).cast<float>();
   lit.weight_multiple = fresnel.multiple.cwiseProduct(irradiance).cast<float>();

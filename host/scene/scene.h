@@ -2,9 +2,11 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "host/base/query.h"
+#include "host/scene/coat.h"
 #include "host/scene/description.h"
 #include "host/scene/environment.h"
 #include "host/scene/geometry.h"
@@ -73,6 +75,7 @@ class Scene {
   const std::vector<MaterialDescription>& materials() const;
   std::uint32_t material_of(const Hit& hit) const;     ///< index into materials()
   double masking_alpha(std::uint32_t material) const;  ///< as it was given
+  const std::optional<CoatInterface>& coat(std::uint32_t material) const;
 
  private:
   struct Implementation;

@@ -3,9 +3,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "host/scene/fresnel.h"
-#include "host/scene/masking.h"
+#include "host/scene/lobes.h"
 #include "host/scene/shading.h"
 
 namespace mica {
@@ -25,39 +26,51 @@ bool above_horizon(const Eigen::Vector3d& view, const Eigen::Vector3d& light) {
   return view.z() >= min_cosine && light.z() >= min_cosine;
 }
 
+VisibleNormals isotropic_normals(double slope_sigma) {
+  return VisibleNormals(Eigen::Matrix2d::Identity() * (slope_sigma * slope_sigma));
+}
+
 }  // namespace
 
-SmoothMaterial::SmoothMaterial(const MaterialDescription& material, double alpha)
+SmoothMaterial::SmoothMaterial(const MaterialDescription& material, const std::optional<CoatInterface>& coat,
+                               double alpha, Lobes lobes)
     : material_(material),
+      coat_(coat),
       alpha_(std::max(alpha, least_alpha)),
-      normals_(Eigen::Matrix2d::Identity() * (alpha_ * alpha_ / 2)) {}
-
-double SmoothMaterial::diffuse_share(const Eigen::Vector3d& view) const {
-  const double diffuse = material_.diffuse.maxCoeff();
-  return diffuse / (diffuse + std::max(reflectance(material_.specular, view.z()).maxCoeff(), 0.05));
-}
+      diffuse_weight_(material.diffuse.maxCoeff()),
+      coat_weight_(coat ? 0.3 : 0),
+      normals_weight_(lobes == Lobes::with_smooth_normals
+                          ? std::max(reflectance(material.specular, 1).maxCoeff(), 0.05)
+                          : 0),
+      coat_normals_(isotropic_normals(coat ? material.coat->roughness : 1)),
+      normals_(isotropic_normals(alpha_ / std::sqrt(2.0))) {}
 
 Color SmoothMaterial::value(const Eigen::Vector3d& view, const Eigen::Vector3d& light) const {
   if (!above_horizon(view, light)) return Color::Zero();
-  const Eigen::Vector3d half = (view + light).normalized();
-  const double D = beckmann_density(half, alpha_);
-  return material_.diffuse * (light.z() / pi) +
-         D * glint_weight(material_.specular, alpha_, Eigen::Vector3d::UnitZ(), view, light);
+  const Illumination incident{light, std::numeric_limits<double>::infinity(), Color::Ones(), 0};
+  const LobesSeen seen = see_lobes(material_, coat_, alpha_, Eigen::Vector3d::UnitZ(), view, incident);
+  if (!(normals_weight_ > 0)) return seen.smooth;
+  return seen.smooth + beckmann_density(seen.half_vector, alpha_) * seen.glint_weight;
 }
 
 Eigen::Vector3d SmoothMaterial::sample(const Eigen::Vector3d& view, const Eigen::Vector3d& uniform) const {
-  if (uniform.z() < diffuse_share(view)) {
+  const double lobe = uniform.z() * (diffuse_weight_ + coat_weight_ + normals_weight_);
+  if (lobe < diffuse_weight_) {
     const double radius = std::sqrt(uniform.x()), azimuth = 2 * pi * uniform.y();
     return {radius * std::cos(azimuth), radius * std::sin(azimuth), std::sqrt(1 - uniform.x())};
   }
-  const Eigen::Vector3d half = normals_.sample(view, uniform.head<2>());
+  const VisibleNormals& normals = lobe < diffuse_weight_ + coat_weight_ ? coat_normals_ : normals_;
+  const Eigen::Vector3d half = normals.sample(view, uniform.head<2>());
   return (2 * half.dot(view) * half - view).normalized();
 }
 
 double SmoothMaterial::pdf(const Eigen::Vector3d& view, const Eigen::Vector3d& light) const {
   if (!above_horizon(view, light)) return 0;
-  const double diffuse = diffuse_share(view);
-  return diffuse * light.z() / pi + (1 - diffuse) * normals_.pdf(view, (view + light).normalized());
+  const Eigen::Vector3d half = (view + light).normalized();
+  double sum = diffuse_weight_ * light.z() / pi;
+  if (coat_weight_ > 0) sum += coat_weight_ * coat_normals_.pdf(view, half);
+  if (normals_weight_ > 0) sum += normals_weight_ * normals_.pdf(view, half);
+  return sum / (diffuse_weight_ + coat_weight_ + normals_weight_);
 }
 
 }  // namespace mica

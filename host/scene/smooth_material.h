@@ -1,18 +1,27 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
+#include "host/scene/coat.h"
 #include "host/scene/description.h"
 #include "host/scene/visible_normals.h"
 
 namespace mica {
 
-/// What a material is to light that bounces between shapes: a Beckmann lobe with the roughness of the whole
-/// map, and the diffuse lobe. All directions are unit and in the tangent frame.
+/// A material's lobes without glints: what needs no P-NDF (diffuse, a coat's own reflection), and with them,
+/// where light bounces between shapes, a Beckmann lobe with the roughness of the whole map. All directions
+/// are unit and in the tangent frame, views above the horizon.
 class SmoothMaterial {
  public:
-  /// @param alpha Beckmann roughness of the map and of the material's own.
-  SmoothMaterial(const MaterialDescription& material, double alpha);
+  enum class Lobes { without_normals, with_smooth_normals };
+
+  /// @param alpha Beckmann roughness of the map and of the material's own. All must outlive this.
+  SmoothMaterial(const MaterialDescription& material, const std::optional<CoatInterface>& coat, double alpha,
+                 Lobes lobes);
+
+  /// Whether there is any lobe at all.
+  bool is_black() const { return !(diffuse_weight_ + coat_weight_ + normals_weight_ > 0); }
 
   /// f_r max(i.g, 0); zero for directions below the horizon. [Yan14] Eq. 1 with a smooth D.
   Color value(const Eigen::Vector3d& view, const Eigen::Vector3d& light) const;
@@ -24,12 +33,11 @@ class SmoothMaterial {
   double pdf(const Eigen::Vector3d& view, const Eigen::Vector3d& light) const;
 
  private:
-  /// Share of the draws that the diffuse lobe takes.
-  double diffuse_share(const Eigen::Vector3d& view) const;
-
   const MaterialDescription& material_;
+  const std::optional<CoatInterface>& coat_;
   double alpha_;
-  VisibleNormals normals_;
+  double diffuse_weight_, coat_weight_, normals_weight_;  // in proportion to which lobes are drawn from
+  VisibleNormals coat_normals_, normals_;
 };
 
 }  // namespace mica

@@ -155,6 +155,32 @@ TEST(GatherLight, TechniquesAgreeOnGlints) {
     }
 }
 
+TEST(GatherLight, TechniquesAgreeUnderACoat) {
+  const std::string material =
+      "surface = \"noise\"\nroughness = 0.15\nrepeat = [40, 40]\ndiffuse = [0.3, 0.2, 0.1]\n"
+      "specular = { color = [0.9, 0.6, 0.3] }\ncoat = { ior = 1.5, roughness = 0.1 }\n";
+  const std::string job = plane_job(material, environment(lamp_sky), 5, "samples = 128");
+  const Image both = render_job(job, Techniques::both);
+  for (const Techniques techniques : {Techniques::lights, Techniques::brdf}) {
+    const Image other = render_job(job, techniques);
+    for (int channel = 0; channel < 3; ++channel) {
+      Image difference = both;
+      for (std::size_t n = 0; n < both.pixels.size(); ++n) difference.pixels[n] -= other.pixels[n];
+      const Mean found = mean_of(difference, channel);
+      EXPECT_LT(std::abs(found.mean), 4.5 * found.error) << channel;
+      EXPECT_LT(found.error, 0.02 * mean_of(both, channel).mean) << channel << ": too noisy to tell";
+    }
+  }
+}
+
+TEST(GatherLight, WhiteUnderACoatLosesNothing) {
+  const std::string white =
+      "surface = \"flat\"\nspecular = { ior = 1 }\ndiffuse = [1, 1, 1]\ncoat = { ior = 1.5, roughness = 0.01 "
+      "}\n";
+  const std::string job = plane_job(white, "[[light]]\ntype = \"furnace\"\n", 5, "samples = 256");
+  expect_mean(render_job(job, Techniques::both), Color::Ones(), 1e-3);  // the coat's Smith masking
+}
+
 TEST(GatherLight, IsTheSameForAnyBatchAndThreadCount) {
   const std::string material =
       "surface = \"noise\"\nroughness = 0.02\nrepeat = [9, 9]\ndiffuse = [0.1, 0.1, 0.1]\n";
