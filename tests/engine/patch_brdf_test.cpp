@@ -86,7 +86,7 @@ TEST(PatchBrdf, ExactMaskingIsTheIntegralOverTheLobes) {
 
 /// What a white patch scatters to a view: the integral of f max(i.g, 0) over all lights.
 double scattered(PatchBrdf* brdf, const Footprint& footprint, const Eigen::Vector3d& view, double roughness) {
-  constexpr int rings = 60, sectors = 120;
+  constexpr int rings = 60, sectors = 80;
   std::vector<BrdfQuery> queries;
   std::vector<double> areas;
   for (int y = 0; y < rings; ++y) {
