@@ -26,6 +26,17 @@
   OFFSET(mica_map_query, scale)             \
   OFFSET(mica_map_query, cutoff)            \
   OFFSET(mica_map_query, slot)              \
+  SIZE(mica_cavity_query)                   \
+  OFFSET(mica_cavity_query, map)            \
+  OFFSET(mica_cavity_query, view_x)         \
+  OFFSET(mica_cavity_query, view_y)         \
+  OFFSET(mica_cavity_query, view_z)         \
+  OFFSET(mica_cavity_query, roughness)      \
+  OFFSET(mica_cavity_query, seed_i)         \
+  OFFSET(mica_cavity_query, seed_j)         \
+  OFFSET(mica_cavity_query, key_low)        \
+  OFFSET(mica_cavity_query, key_high)       \
+  OFFSET(mica_cavity_query, lobe_sigma)     \
   SIZE(mica_mixture_query)                  \
   OFFSET(mica_mixture_query, map)           \
   OFFSET(mica_mixture_query, axis_1x)       \

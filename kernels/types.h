@@ -79,6 +79,16 @@ typedef struct {
   MICA_INT slot;      // where the result goes
 } mica_map_query;
 
+// What is asked of V-shaped cavities about all light from a view. [Che19]
+typedef struct {
+  mica_map_query map;                  // its normals do not matter
+  MICA_FLOAT view_x, view_y, view_z;   // unit, above the horizon
+  MICA_FLOAT roughness;                // standard deviation on the disk
+  MICA_INT seed_i, seed_j;             // of a draw: in [0, width) x [0, height) times the seeds a texel
+  MICA_INT key_low, key_high;          // of its random numbers
+  MICA_FLOAT lobe_sigma;               // of the specular compensation: standard deviation of (i_x, i_y)
+} mica_cavity_query;
+
 // One query of a Gaussian mixture, in texel units. [Yan16]. With tau_i^2 = sigma_i^2 + k, sigma_i and a_i the footprint's
 // standard deviations and axes, k the variance of the elements' position kernel.
 typedef struct {
@@ -134,6 +144,7 @@ static_assert(sizeof(mica_lobe_query) == 88 && offsetof(mica_lobe_query, slope_x
               offsetof(mica_lobe_query, spread_variance) == 84);
 static_assert(sizeof(mica_mixture_query) == 96 && offsetof(mica_mixture_query, axis_1x) == 64 &&
               offsetof(mica_mixture_query, kernel_variance) == 92);
+static_assert(sizeof(mica_cavity_query) == 100 && offsetof(mica_cavity_query, lobe_sigma) == 96);
 static_assert(sizeof(mica_map_grid) == 16 && offsetof(mica_map_grid, blocks_x) == 8);
 static_assert(sizeof(mica_map_query) == 64 && offsetof(mica_map_query, whiten_1x) == 16 &&
               offsetof(mica_map_query, half_s) == 40 && offsetof(mica_map_query, slot) == 60);

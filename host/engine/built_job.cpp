@@ -39,7 +39,8 @@ void BuiltJob::build(std::size_t n, Device& device) {
   if (planned.asks_densities)
     evaluators_[n] = make_evaluator(planned.evaluator, device, surfaces_[n], planned.elements);
   if (planned.patch_brdf) {
-    brdfs_[n] = make_patch_brdf(planned.evaluator, device, surfaces_[n], {planned.masking, planned.elements});
+    brdfs_[n] = make_patch_brdf(planned.evaluator, device, surfaces_[n],
+                                {planned.masking, planned.elements, planned.compensation, planned.energy});
   } else if (plan_.gathers_light) {
     // Of the densities, that of triangles alone is that of the surface's normals, and not an approximation.
     const auto draws =

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "host/base/cavities.h"
 #include "host/base/masking.h"
 #include "host/device/device.h"
 #include "host/engine/patch_brdf.h"
@@ -16,7 +17,9 @@ const std::vector<std::string>& masking_names();
 
 struct PatchBrdfSettings {
   Masking masking = Masking::exact;
-  int elements = 1;  ///< of a mixture, a texel and axis
+  int elements = 1;  ///< of a mixture, or seeds of cavities, a texel and axis
+  Compensation compensation = Compensation::diffuse;  ///< of cavities
+  LostEnergy energy = LostEnergy::exact;              ///< of cavities
 };
 
 /// Names that `make_patch_brdf` takes.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <set>
 
+#include "host/build/footprint_energy.h"
 #include "host/build/lobes.h"
 #include "host/build/map_structure.h"
 #include "host/build/mixture.h"
@@ -46,6 +47,11 @@ void plan_structure(PlannedEvaluator* planned) {
     }
   } else if (planned->evaluator == "smooth") {
     planned->device_bytes = slope_pyramid_bytes(width * elements, height * elements, true);
+  } else if (planned->evaluator == "cavities") {
+    planned->device_bytes = map_structure_bytes(width, height);
+    if (planned->energy == LostEnergy::table) planned->host_bytes += footprint_energy_bytes(width, height);
+    planned->kernel += fmt::format(" -DMICA_INTERPOLATION={} -DMICA_SEEDS={}",
+                                   static_cast<int>(planned->interpolation), elements);
   } else {
     planned->device_bytes = planned->evaluator == "gaussians" ? gaussian_mixture_bytes(width, height)
                                                               : map_structure_bytes(width, height);
@@ -60,6 +66,7 @@ PlannedEvaluator plan_evaluator(const Job& job, int surface_index, const Materia
   planned.surface = surface.name;
   planned.evaluator = material.ndf;
   planned.elements = material.elements, planned.masking = material.masking;
+  planned.compensation = material.compensation, planned.energy = material.energy;
   const std::vector<std::string>& patches = patch_brdf_names();
   planned.patch_brdf = std::find(patches.begin(), patches.end(), material.ndf) != patches.end();
   planned.surface_index = surface_index;
@@ -77,7 +84,8 @@ int evaluator_for(const Job& job, const MaterialDescription& material,
   const int surface_index = static_cast<int>(surface - job.surfaces.begin());
   const auto found = std::find_if(planned->begin(), planned->end(), [&](const PlannedEvaluator& p) {
     return p.surface_index == surface_index && p.evaluator == material.ndf &&
-           p.elements == material.elements && p.masking == material.masking;
+           p.elements == material.elements && p.masking == material.masking &&
+           p.compensation == material.compensation && p.energy == material.energy;
   });
   const int index = static_cast<int>(found - planned->begin());
   if (found == planned->end()) planned->push_back(plan_evaluator(job, surface_index, material));

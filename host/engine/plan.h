@@ -15,6 +15,8 @@ struct PlannedEvaluator {
   int surface_index = 0;  ///< into Job::surfaces
   int elements = 1;       ///< of a mixture, a texel and axis
   Masking masking = Masking::exact;
+  Compensation compensation = Compensation::diffuse;
+  LostEnergy energy = LostEnergy::exact;
   bool patch_brdf = false;      ///< it is one of patch_brdf_names(), and lights are multiplied with its BRDF
   bool asks_densities = false;  ///< a material multiplies lights with its density
   int width = 0, height = 0;

@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include "host/base/cavities.h"
 #include "host/base/masking.h"
 
 namespace mica {
@@ -46,8 +47,10 @@ struct MaterialDescription {
   Eigen::Vector2d repeat{1, 1};      ///< map periods over the shape's uv
   std::string ndf = "triangles";     ///< evaluator
   Masking masking = Masking::exact;  ///< of an evaluator with a BRDF of its own
-  int elements = 1;                  ///< of a mixture, a texel and axis
-  double roughness = 0.01;           ///< sigma_r on the disk
+  int elements = 1;                  ///< of a mixture, or seeds of cavities, a texel and axis
+  Compensation compensation = Compensation::diffuse;  ///< of cavities
+  LostEnergy energy = LostEnergy::exact;              ///< of cavities
+  double roughness = 0.01;                            ///< sigma_r on the disk
   Fresnel specular = ColorFresnel{};
   Color diffuse{0, 0, 0};  ///< Lambertian albedo
   std::optional<CoatDescription> coat = {};
