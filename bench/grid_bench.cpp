@@ -10,8 +10,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "host/bench/fma_peak.h"
 #include "host/base/error.h"
+#include "host/bench/fma_peak.h"
 #include "host/engine/grid_evaluator.h"
 
 namespace mica::bench {

@@ -1,5 +1,6 @@
-// `gaussians` against `triangles`, by turns on the same queries in the same run: 65,536 coherent footprints
-// on a 2048^2 spectrum, roughness 0.005. Prints a table; with an argument, writes it as JSON to that file.
+// `gaussians` and `beckmanns` against `triangles`, by turns on the same queries in the same run: 65,536
+// coherent footprints on a 2048^2 spectrum, roughness 0.005. Prints a table; with an argument, writes it as
+// JSON to that file.
 
 #include <fmt/format.h>
 
@@ -7,10 +8,11 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
-#include "host/bench/coherent.h"
-#include "host/bench/fma_peak.h"
 #include "host/base/error.h"
 #include "host/base/stopwatch.h"
+#include "host/bench/coherent.h"
+#include "host/bench/fma_peak.h"
+#include "host/engine/beckmann_evaluator.h"
 #include "host/engine/mixture_evaluator.h"
 #include "host/engine/triangle_evaluator.h"
 #include "host/reference/oracle.h"
@@ -19,7 +21,19 @@ namespace mica::bench {
 namespace {
 
 constexpr int kRepeats = 11;
-constexpr double kFlopsAnElement = 105;  // of slice_elements and its share of the leaf; a multiply-add is two
+/// A mixture, and what one of its elements takes with its share of the leaf; a multiply-add is two.
+struct Mixture {
+  const char* name;
+  double flops_an_element;
+};
+constexpr Mixture kMixtures[] = {{"gaussians", 105}, {"beckmanns", 92}};
+
+std::unique_ptr<Evaluator> make_mixture(const Mixture& mixture, Device& device, const Surface& surface,
+                                        const MixtureSettings& settings) {
+  if (mixture.name == std::string("gaussians"))
+    return std::make_unique<GaussianEvaluator>(device, surface, settings);
+  return std::make_unique<BeckmannEvaluator>(device, surface, settings);
+}
 
 /// Seconds of two evaluators, measured by turns so that a noisy neighbour disturbs both.
 struct Duel {
@@ -47,38 +61,40 @@ int run(const char* json_path) {
   const reference::Oracle oracle(surface, 1e-7);
   const double peak = measure_fma_peak(device);
   fmt::print("device {}, multiply-add peak {:.0f} GFLOP/s\n", device.info().name, 1e-9 * peak);
-  fmt::print("{:>8} {:>6} {:>10} {:>8} {:>12} {:>21} {:>14} {:>8} {:>8} {:>12} {:>10}\n", "elements", "sigma",
-             "MiB", "build s", "queries/s", "(spread)", "elements/query", "of peak", "ratio", "triangles q/s",
-             "error L2");
+  fmt::print("{:>10} {:>8} {:>6} {:>10} {:>8} {:>12} {:>21} {:>14} {:>8} {:>8} {:>12} {:>10}\n", "mixture",
+             "elements", "sigma", "MiB", "build s", "queries/s", "(spread)", "elements/query", "of peak",
+             "ratio", "triangles q/s", "error L2");
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
-  for (const int elements : {1, 2}) {
+  for (const auto& [mixture, elements] : std::vector<std::pair<Mixture, int>>{
+           {kMixtures[0], 1}, {kMixtures[0], 2}, {kMixtures[1], 1}, {kMixtures[1], 2}}) {
     MixtureSettings settings;
     settings.elements = elements;
-    GaussianEvaluator gaussians(device, surface, settings);
+    const auto evaluator = make_mixture(mixture, device, surface, settings);
     settings.count_elements = true;
-    GaussianEvaluator counter(device, surface, settings);
+    const auto counter = make_mixture(mixture, device, surface, settings);
     for (const double sigma : {2.0, 8.0, 32.0}) {
       const std::vector<Query> queries = coherent_queries(surface, sigma);
       const std::vector<Query> batch = thinned(queries, sigma > 16 ? 16 : 1);
       const std::vector<Query> few = thinned(queries, sigma > 16 ? 1024 : sigma > 4 ? 64 : 16);
-      const Duel times = duel(&gaussians, &triangles, batch);
-      const std::vector<float> counts = counter.evaluate(batch);
+      const Duel times = duel(evaluator.get(), &triangles, batch);
+      const std::vector<float> counts = counter->evaluate(batch);
       const double count = static_cast<double>(batch.size());
       const double elements_a_query = std::accumulate(counts.begin(), counts.end(), 0.0) / count;
       const double rate = count / times.ours.median_seconds,
                    triangles_rate = count / times.theirs.median_seconds;
-      const double error = relative_l2(gaussians.evaluate(few), oracle.evaluate(few));
-      const double share = rate * elements_a_query * kFlopsAnElement / peak;
+      const double error = relative_l2(evaluator->evaluate(few), oracle.evaluate(few));
+      const double share = rate * elements_a_query * mixture.flops_an_element / peak;
       fmt::print(
-          "{:>8} {:>6} {:>10.1f} {:>8.3f} {:>12.0f} {:>10.0f}-{:<10.0f} {:>14.0f} {:>7.1f}% {:>8.2f} "
+          "{:>10} {:>8} {:>6} {:>10.1f} {:>8.3f} {:>12.0f} {:>10.0f}-{:<10.0f} {:>14.0f} {:>7.1f}% {:>8.2f} "
           "{:>12.0f} {:>10.1e}\n",
-          elements, sigma, static_cast<double>(gaussians.device_bytes()) / (1 << 20),
-          gaussians.build_seconds(), rate, count / times.ours.highest, count / times.ours.lowest,
+          mixture.name, elements, sigma, static_cast<double>(evaluator->device_bytes()) / (1 << 20),
+          evaluator->build_seconds(), rate, count / times.ours.highest, count / times.ours.lowest,
           elements_a_query, 100 * share, rate / triangles_rate, triangles_rate, error);
-      rows.push_back({{"elements", elements},
+      rows.push_back({{"mixture", mixture.name},
+                      {"elements", elements},
                       {"sigma_texels", sigma},
-                      {"device_bytes", gaussians.device_bytes()},
-                      {"build_seconds", gaussians.build_seconds()},
+                      {"device_bytes", evaluator->device_bytes()},
+                      {"build_seconds", evaluator->build_seconds()},
                       {"queries_per_second", rate},
                       {"elements_per_query", elements_a_query},
                       {"share_of_peak", share},

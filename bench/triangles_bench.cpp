@@ -8,11 +8,11 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
-#include "host/bench/coherent.h"
-#include "host/bench/fma_peak.h"
 #include "bench/paper_recursion.h"
 #include "host/base/error.h"
 #include "host/base/stopwatch.h"
+#include "host/bench/coherent.h"
+#include "host/bench/fma_peak.h"
 #include "host/engine/triangle_evaluator.h"
 #include "host/reference/oracle.h"
 

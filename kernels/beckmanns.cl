@@ -5,7 +5,7 @@
 // One wave a query; leaves of 4x4 elements survive the walk and are summed sixteen at a time, without a branch.
 
 #include "lobe.h"
-#include "map_cull.h"
+#include "lobe_bound.h"
 #include "types.h"
 #include "wave.h"
 
@@ -14,30 +14,10 @@
 #define MICA_COUNT_ELEMENTS 0
 #endif
 
-// Bits of the children of `node` that reach the cutoff; as in map_cull.h, for means in a box of slopes and standard
-// deviations of up to `spread` on the disk about them, at centres that lie half an element inside the children.
 static inline uint surviving_lobes(global const mica_lobe_query* query, global const short* node, int i, int j,
                                    int child_size, WAVE_SHARED int* scratch) {
-  global const mica_map_query* place = &query->map;
-  const float unit = query->slope_unit;
-  const wave_float x_min = unit * wave_to_float(wave_load_short(node));
-  const wave_float x_max = unit * wave_to_float(wave_load_short(node + 16));
-  const wave_float y_min = unit * wave_to_float(wave_load_short(node + 32));
-  const wave_float y_max = unit * wave_to_float(wave_load_short(node + 48));
-  const wave_float spread = wave_to_float(wave_load_short(node + 64));
-  const wave_float d_x = max(max(x_min - query->slope_x, query->slope_x - x_max), 0.0f);
-  const wave_float d_y = max(max(y_min - query->slope_y, query->slope_y - y_max), 0.0f);
-  // |B^-1 d|^2 >= |d|^2 / w^3
-  const wave_float far_x = max(fabs(x_min), fabs(x_max)), far_y = max(fabs(y_min), fabs(y_max));
-  const wave_float w = fma(far_x, far_x, fma(far_y, far_y, 1.0f));
-  const wave_float variance = fma(query->spread_variance * spread, spread, 1.0f);
-  const wave_float x = wave_to_float(i + (WAVE_LANE & 3) * child_size) - (place->mean_x - 0.5f);
-  const wave_float y = wave_to_float(j + (WAVE_LANE >> 2) * child_size) - (place->mean_y - 0.5f);
-  const wave_float q_position = footprint_bound(place, x, y, child_size - 1.0f);
-  const float k = place->inverse_roughness;
-  const wave_int survives =
-      wave_mask(k * k * fma(d_x, d_x, d_y * d_y) <= (place->cutoff - q_position) * variance * w * w * w);
-  return wave_ballot(survives & wave_mask(x_min <= x_max), scratch);
+  const lobe_children children = load_children(query, node, i, j, child_size);
+  return wave_ballot(matter_to_density(query, &children), scratch);
 }
 
 typedef wave_float leaf_results;

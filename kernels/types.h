@@ -27,7 +27,8 @@ enum {
   MICA_MIXTURE_NODE_STRIDE = 80, // the same of the elements' means, then spread[16]
   // Shorts a leaf of lobes: mean_x[16], mean_y[16], and the rows of the spread's Cholesky factor xx[16], yx[16], yy[16];
   // then four floats: the mean that the means are counted from, x and y, and the units of means and of spreads.
-  MICA_LOBE_LEAF = 88
+  MICA_LOBE_LEAF = 88,
+  MICA_SLOPE_APRON = 3  // cells right of and above a level of the pyramid of slopes: whole 4x4 cells are read
 };
 
 // Normals (s, t) are 32-bit fixed point: the difference of two is exact, and 2^-30 is fine enough for
@@ -78,6 +79,16 @@ typedef struct {
   MICA_INT slot;      // where the result goes
 } mica_map_query;
 
+// What is asked of V-shaped cavities about all light from a view. [Che19]
+typedef struct {
+  mica_map_query map;                  // its normals do not matter
+  MICA_FLOAT view_x, view_y, view_z;   // unit, above the horizon
+  MICA_FLOAT roughness;                // standard deviation on the disk
+  MICA_INT seed_i, seed_j;             // of a draw: in [0, width) x [0, height) times the seeds a texel
+  MICA_INT key_low, key_high;          // of its random numbers
+  MICA_FLOAT lobe_sigma;               // of the specular compensation: standard deviation of (i_x, i_y)
+} mica_cavity_query;
+
 // One query of a Gaussian mixture, in texel units. [Yan16]. With tau_i^2 = sigma_i^2 + k, sigma_i and a_i the footprint's
 // standard deviations and axes, k the variance of the elements' position kernel.
 typedef struct {
@@ -99,11 +110,41 @@ typedef struct {
   MICA_FLOAT spread_variance;             // what a squared `spread` of a node counts for, in roughnesses squared
 } mica_lobe_query;
 
+// A footprint on a level of the pyramid of slopes, in cells: a Gaussian of the cells' weights.
+typedef struct {
+  MICA_INT offset;                      // of the level's first number; -1: the footprint is too small for all of them
+  MICA_INT width, height;               // cells a period
+  MICA_FLOAT mean_unit, spread_unit;    // of its numbers
+  MICA_INT cell_i, cell_j;              // mean, whole cells
+  MICA_FLOAT cell_x, cell_y;            // and the rest, in [0, 1)
+  MICA_FLOAT sigma_y, shear, sigma_x;   // y has sigma_y, x given y the mean shear * y and sigma_x
+} mica_slope_footprint;
+
+// One question of a patch BRDF. [Che18] Eq. 7
+typedef struct {
+  mica_lobe_query lobe;          // of the half vector
+  mica_slope_footprint slopes;
+  MICA_FLOAT view_x, view_y, view_z;
+  MICA_FLOAT light_x, light_y, light_z;
+  MICA_FLOAT weight;             // of an element at the footprint's mean
+} mica_patch_query;
+
+// One query of `smooth`.
+typedef struct {
+  mica_map_query map;  // of which it uses slot, inverse_roughness and scale
+  mica_slope_footprint slopes;
+  MICA_FLOAT slope_x, slope_y;  // of the half vector
+} mica_smooth_query;
+
 #ifdef __cplusplus
+static_assert(sizeof(mica_slope_footprint) == 48 && offsetof(mica_slope_footprint, sigma_y) == 36);
+static_assert(sizeof(mica_patch_query) == 164 && offsetof(mica_patch_query, weight) == 160);
+static_assert(sizeof(mica_smooth_query) == 120 && offsetof(mica_smooth_query, slope_x) == 112);
 static_assert(sizeof(mica_lobe_query) == 88 && offsetof(mica_lobe_query, slope_x) == 64 &&
               offsetof(mica_lobe_query, spread_variance) == 84);
 static_assert(sizeof(mica_mixture_query) == 96 && offsetof(mica_mixture_query, axis_1x) == 64 &&
               offsetof(mica_mixture_query, kernel_variance) == 92);
+static_assert(sizeof(mica_cavity_query) == 100 && offsetof(mica_cavity_query, lobe_sigma) == 96);
 static_assert(sizeof(mica_map_grid) == 16 && offsetof(mica_map_grid, blocks_x) == 8);
 static_assert(sizeof(mica_map_query) == 64 && offsetof(mica_map_query, whiten_1x) == 16 &&
               offsetof(mica_map_query, half_s) == 40 && offsetof(mica_map_query, slot) == 60);

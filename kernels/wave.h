@@ -82,6 +82,7 @@ static inline float wave_max(wave_float x, local int* scratch) {
 #define wave_store_float(value, pointer) ((pointer)[WAVE_LANE] = (value))
 // Lane (x, y) = (lane & 3, lane >> 2) reads pointer[y * row + x], and its right neighbour.
 #define wave_load_4x4(pointer, row) ((pointer)[(WAVE_LANE >> 2) * (row) + (WAVE_LANE & 3)])
+#define wave_load_short_4x4(pointer, row) convert_int((pointer)[(WAVE_LANE >> 2) * (row) + (WAVE_LANE & 3)])
 static inline void wave_load_4x4_pair(global const int* pointer, int row, private wave_int* left,
                                       private wave_int* right) {
   *left = wave_load_4x4(pointer, row), *right = wave_load_4x4(pointer + 1, row);
@@ -200,6 +201,11 @@ static inline float wave_max(wave_float x, private int* scratch) {
 static inline wave_int wave_load_4x4(global const int* pointer, int row) {
   return (int16)(vload4(0, pointer), vload4(0, pointer + row), vload4(0, pointer + 2 * row),
                  vload4(0, pointer + 3 * row));
+}
+
+static inline wave_int wave_load_short_4x4(global const short* pointer, int row) {
+  return convert_int16((short16)(vload4(0, pointer), vload4(0, pointer + row), vload4(0, pointer + 2 * row),
+                                 vload4(0, pointer + 3 * row)));
 }
 
 // The same and its right neighbour; reads eight of each row, so that loads and shuffles are whole registers.

@@ -15,6 +15,7 @@
 #include "host/app/output.h"
 #include "host/app/query_table.h"
 #include "host/base/error.h"
+#include "host/engine/cavity_brdf.h"
 #include "host/engine/make_patch_brdf.h"
 #include "host/engine/map_query.h"
 #include "host/image/image.h"
@@ -28,7 +29,7 @@ struct EvalOptions {
   MapOptions map;
   GridOptions grid;
   std::string quantity = "ndf", ndf, queries, output, json;
-  std::string masking = "exact", part = "all";
+  std::string masking = "exact", part = "all", compensation = "diffuse", energy = "exact";
   std::optional<double> roughness, tolerance;
   int device = 0, elements = 1;
 };
@@ -107,11 +108,14 @@ int run_patches(const EvalOptions& options) {
   if (options.tolerance) throw UsageError("--tolerance is for --quantity ndf");
   return evaluate_patches({options.map, options.quantity, options.ndf, options.queries, options.output,
                            options.json, options.masking, options.part, options.roughness, options.grid.seed,
-                           options.device, options.elements});
+                           options.device, options.elements, options.compensation, options.energy});
 }
 
 int run(const EvalOptions& options) {
   if (options.quantity != "ndf") return run_patches(options);
+  if (options.ndf == "cavities")
+    throw UsageError(
+        "--ndf cavities answers --quantity brdf, energy and sample; two normals a point are no P-NDF");
   check_tolerance(options.ndf, options.tolerance);
   check_extension(options.output, {".npy"});
   prepare_output(options.output);
@@ -145,7 +149,7 @@ int run(const EvalOptions& options) {
 
 std::vector<std::string> evaluator_choices() {
   std::vector<std::string> names = ndf_names();
-  names.push_back("grid");
+  names.insert(names.end(), {"grid", "cavities"});
   return names;
 }
 
@@ -162,6 +166,19 @@ void add_patch_options(CLI::App* command, EvalOptions* options) {
                    "map's roughness")
       ->type_name("NAME")
       ->check(CLI::IsMember(masking_names()))
+      ->capture_default_str();
+  command
+      ->add_option("--energy", options->energy,
+                   "Of cavities, what one bounce loses: of every seed under the footprint, or by a table of "
+                   "roughness and angle")
+      ->type_name("NAME")
+      ->check(CLI::IsMember(lost_energy_names()))
+      ->capture_default_str();
+  command
+      ->add_option("--compensation", options->compensation,
+                   "Of cavities, where light goes that bounces more than once")
+      ->type_name("NAME")
+      ->check(CLI::IsMember(compensation_names()))
       ->capture_default_str();
   command->add_option("--part", options->part, "Light that bounced once, more often, or both")
       ->type_name("NAME")
@@ -218,7 +235,8 @@ void add_eval(CLI::App& app, Command* chosen) {
       ->type_name("FILE");
   command
       ->add_option("--elements", options->elements,
-                   "Elements of a mixture a texel and axis: more are slower and closer to the map")
+                   "Elements of a mixture, or seeds of cavities, a texel and axis: more are slower and "
+                   "closer to the map")
       ->type_name("N")
       ->check(CLI::Range(1, 4))
       ->capture_default_str();

@@ -14,6 +14,7 @@
 #include "host/app/patch_table.h"
 #include "host/base/error.h"
 #include "host/base/stopwatch.h"
+#include "host/engine/cavity_brdf.h"
 #include "host/engine/make_patch_brdf.h"
 #include "host/image/image.h"
 
@@ -27,8 +28,12 @@ PatchQuantity to_quantity(const std::string& name) {
 
 PatchBrdfSettings to_settings(const PatchEvaluation& options) {
   PatchBrdfSettings settings;
-  const auto found = std::find(masking_names().begin(), masking_names().end(), options.masking);
-  settings.masking = static_cast<Masking>(found - masking_names().begin());
+  const auto index = [](const std::vector<std::string>& names, const std::string& name) {
+    return static_cast<int>(std::find(names.begin(), names.end(), name) - names.begin());
+  };
+  settings.masking = static_cast<Masking>(index(masking_names(), options.masking));
+  settings.compensation = static_cast<Compensation>(index(compensation_names(), options.compensation));
+  settings.energy = static_cast<LostEnergy>(index(lost_energy_names(), options.energy));
   settings.elements = options.elements;
   return settings;
 }
@@ -131,6 +136,8 @@ int evaluate_patches(const PatchEvaluation& options) {
               {"quantity", options.quantity},
               {"evaluator", brdf->name()},
               {"masking", options.masking},
+              {"compensation", options.compensation},
+              {"energy", options.energy},
               {"part", options.part},
               {"seed", options.seed},
               {"map",

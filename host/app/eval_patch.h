@@ -17,6 +17,7 @@ struct PatchEvaluation {
   std::optional<double> roughness;
   std::uint64_t seed = 1;
   int device = 0, elements = 1;
+  std::string compensation = "diffuse", energy = "exact";
 };
 
 /// "brdf", "energy" and "sample".

@@ -18,7 +18,16 @@ namespace {
 
 constexpr std::size_t kBatchQueries = 1 << 17;
 constexpr double kCutoffError = 1e-6;
+constexpr std::size_t kAnswers = 4;   // floats a query of beckmann_patches.cl
 constexpr int kAlbedoSamples = 1024;  // a view; quasi-random
+
+/// Least product of two areas that is divided by: smaller ones are seen of nothing.
+constexpr double kLeastAreas = 1e-12;
+constexpr double kPi = 3.14159265358979323846;
+
+Eigen::Vector3d half_vector(const BrdfQuery& query) {
+  return (query.view + query.light).normalized();
+}
 
 /// Directions of which nothing is seen or lit.
 bool below_horizon(const Eigen::Vector3d& direction) {
@@ -62,44 +71,85 @@ BeckmannBrdf::BeckmannBrdf(Device& device, const Surface& surface, const PatchBr
       sampler_(lobes_, grid_),
       squared_slope_(mean_squared_slope(surface)),
       cutoff_(cutoff_for(kCutoffError)) {
-  if (masking_ != Masking::geometric)
-    throw UsageError("masking \"" + masking_names()[static_cast<int>(masking_)] +
-                     "\" is not available in this version; geometric is");
-  densities_.emplace(device, lobes_.grid,
-                     std::vector<cl::Buffer>{device.upload(lobes_.lobes, "the map's lobes"),
-                                             device.upload(lobes_.block_nodes, "the map's bounds"),
-                                             device.upload(lobes_.tile_nodes, "the map's bounds")},
-                     lobes_.bytes(), "beckmanns", "-DMICA_COUNT_ELEMENTS=0", device.wave_form(),
-                     kBatchQueries);
+  std::vector<cl::Buffer> buffers = {device.upload(lobes_.lobes, "the map's lobes"),
+                                     device.upload(lobes_.block_nodes, "the map's bounds"),
+                                     device.upload(lobes_.tile_nodes, "the map's bounds")};
+  device_bytes_ = lobes_.bytes();
+  if (masking_ == Masking::geometric) {
+    densities_.emplace(device, lobes_.grid, std::move(buffers), device_bytes_, "beckmanns",
+                       "-DMICA_COUNT_ELEMENTS=0", device.wave_form(), kBatchQueries);
+  } else {
+    const SlopePyramid pyramid = build_slope_pyramid(lobes_, false);
+    levels_ = pyramid.levels;
+    device_bytes_ += pyramid.bytes();
+    buffers.push_back(device.upload(pyramid.numbers, "the pyramid of slopes"));
+    patches_.emplace(device, lobes_.grid, std::move(buffers), device_bytes_, "beckmann_patches",
+                     fmt::format("-DMICA_MASKING={}", masking_ == Masking::exact ? 2 : 1), device.wave_form(),
+                     kBatchQueries, kAnswers);
+  }
+  build_seconds_ = watch_.seconds();
 }
 
-BeckmannBrdf::Areas BeckmannBrdf::geometric_areas(const BrdfQuery& query) const {
-  const double alpha = std::sqrt(squared_slope_ + 2 * query.roughness * query.roughness);
-  const auto area = [&](double cosine) { return cosine * (1 + beckmann_lambda(cosine, alpha)); };
-  return {area(query.view.z()), area(query.light.z())};
+std::vector<BeckmannBrdf::Parts> BeckmannBrdf::geometric_parts(const std::vector<BrdfQuery>& queries) {
+  std::vector<device_types::mica_lobe_query> lobe_queries(queries.size());
+  tbb::parallel_for(std::size_t{0}, queries.size(), [&](std::size_t n) {
+    const BrdfQuery& query = queries[n];
+    lobe_queries[n] = to_lobe_query({query.footprint, half_vector(query).head<2>(), query.roughness},
+                                    lobe_weights(query.footprint, grid_), grid_, cutoff_);
+  });
+  const std::vector<float> densities = densities_->start(std::move(lobe_queries))->wait();
+  std::vector<Parts> parts(queries.size());
+  tbb::parallel_for(std::size_t{0}, queries.size(), [&](std::size_t n) {
+    const double alpha = std::sqrt(squared_slope_ + 2 * queries[n].roughness * queries[n].roughness);
+    const auto area = [&](double cosine) { return cosine * (1 + beckmann_lambda(cosine, alpha)); };
+    parts[n] = {densities[n], area(queries[n].view.z()), area(queries[n].light.z()), queries[n].light.z()};
+  });
+  return parts;
+}
+
+std::vector<BeckmannBrdf::Parts> BeckmannBrdf::patch_parts(const std::vector<BrdfQuery>& queries) {
+  std::vector<device_types::mica_patch_query> patch_queries(queries.size());
+  const double ripple = masking_ == Masking::exact ? kSmallRipple : kMiddleRipple;
+  tbb::parallel_for(std::size_t{0}, queries.size(), [&](std::size_t n) {
+    const BrdfQuery& query = queries[n];
+    device_types::mica_patch_query& patch = patch_queries[n];
+    const LobeWeights weights = lobe_weights(query.footprint, grid_);
+    patch.lobe = to_lobe_query({query.footprint, half_vector(query).head<2>(), query.roughness}, weights,
+                               grid_, cutoff_);
+    patch.slopes = to_slope_footprint(weights, grid_.grid, levels_, ripple);
+    const Eigen::Vector3f view = query.view.cast<float>(), light = query.light.cast<float>();
+    patch.view_x = view.x(), patch.view_y = view.y(), patch.view_z = view.z();
+    patch.light_x = light.x(), patch.light_y = light.y(), patch.light_z = light.z();
+    patch.weight = static_cast<float>(1 / (2 * kPi * weights.sigma[0] * weights.sigma[1] * weights.sum));
+  });
+  const std::vector<float> answers = patches_->start(std::move(patch_queries))->wait();
+  std::vector<Parts> parts(queries.size());
+  for (std::size_t n = 0; n < queries.size(); ++n)
+    parts[n] = {answers[kAnswers * n], answers[kAnswers * n + 1], answers[kAnswers * n + 2],
+                answers[kAnswers * n + 3]};
+  return parts;
+}
+
+std::vector<BeckmannBrdf::Parts> BeckmannBrdf::parts(const std::vector<BrdfQuery>& queries) {
+  return masking_ == Masking::geometric ? geometric_parts(queries) : patch_parts(queries);
 }
 
 std::vector<BrdfValue> BeckmannBrdf::evaluate(const std::vector<BrdfQuery>& queries) {
-  std::vector<std::size_t> places;  // of the queries that have both directions above the horizon
-  for (std::size_t n = 0; n < queries.size(); ++n)
-    if (!below_horizon(queries[n].view) && !below_horizon(queries[n].light)) places.push_back(n);
-  std::vector<device_types::mica_lobe_query> lobe_queries(places.size());
-  tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t n) {
-    const BrdfQuery& query = queries[places[n]];
-    const Eigen::Vector3d half = (query.view + query.light).normalized();
-    lobe_queries[n] = to_lobe_query({query.footprint, half.head<2>(), query.roughness}, grid_, cutoff_);
-  });
-  const std::vector<float> densities = densities_->start(std::move(lobe_queries))->wait();
-
+  std::vector<std::size_t> places;
+  std::vector<BrdfQuery> visible;
+  for (std::size_t n = 0; n < queries.size(); ++n) {
+    if (below_horizon(queries[n].view) || below_horizon(queries[n].light)) continue;
+    places.push_back(n);
+    visible.push_back(queries[n]);
+  }
+  const std::vector<Parts> all = parts(visible);
   std::vector<BrdfValue> values(queries.size());
-  tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t n) {
-    const BrdfQuery& query = queries[places[n]];
-    const Eigen::Vector3d half = (query.view + query.light).normalized();
-    const Areas areas = geometric_areas(query);
-    const double density = densities[n];
-    values[places[n]].single = static_cast<float>(density * query.light.z() / (4 * areas.view * areas.light));
-    values[places[n]].pdf = static_cast<float>(density * half.z() / (4 * query.view.dot(half)));
-  });
+  for (std::size_t n = 0; n < places.size(); ++n) {
+    const Eigen::Vector3d half = half_vector(visible[n]);
+    const double areas = std::max(all[n].view_area * all[n].light_area, kLeastAreas);
+    values[places[n]].single = static_cast<float>(all[n].density * visible[n].light.z() / (4 * areas));
+    values[places[n]].pdf = static_cast<float>(all[n].density * half.z() / (4 * visible[n].view.dot(half)));
+  }
   return values;
 }
 
@@ -126,23 +176,45 @@ std::vector<BrdfSample> BeckmannBrdf::sample(const std::vector<SampleQuery>& que
   return samples;
 }
 
+/// Drawn normals h have the density D(h) (h.g), so that the mean of <o, h> / (h.g) is I(o), and that times
+/// A_P(i) / I(i), over I(o), what is scattered. With exact areas the first mean is known, and what is lost is
+/// summed instead: it cannot be negative.
+Albedo BeckmannBrdf::albedo(const ViewQuery& from) {
+  std::vector<Eigen::Vector3d> normals(kAlbedoSamples);
+  tbb::parallel_for(0, kAlbedoSamples, [&](int k) {
+    normals[k] = sampler_.draw(from.footprint, from.roughness, even_uniforms(1, k), synthesis::mix(k));
+  });
+  std::vector<BrdfQuery> seen;
+  std::vector<double> facing;
+  double hidden_facing = 0;  // of normals that mirror light from below the horizon
+  for (const Eigen::Vector3d& normal : normals) {
+    const double cosine = from.view.dot(normal);
+    if (cosine <= 0) continue;
+    const Eigen::Vector3d light = mirrored(from.view, normal);
+    if (below_horizon(light)) {
+      hidden_facing += cosine / normal.z();
+    } else {
+      seen.push_back({from.footprint, from.view, light, from.roughness});
+      facing.push_back(cosine / normal.z());
+    }
+  }
+  if (seen.empty()) return {0, 1};
+  const std::vector<Parts> all = parts(seen);
+  const double scale = 1 / (kAlbedoSamples * std::max(all[0].view_area, kLeastAreas));
+  double scattered = 0, lost = scale * hidden_facing;
+  for (std::size_t n = 0; n < seen.size(); ++n) {
+    const double g1 = all[n].light_projected / std::max(all[n].light_area, kLeastAreas);
+    scattered += scale * facing[n] * g1;
+    lost += scale * facing[n] * std::max(1 - g1, 0.0);
+  }
+  if (masking_ == Masking::exact) scattered = 1 - std::min(lost, 1.0);
+  return {static_cast<float>(scattered), static_cast<float>(std::max(1 - scattered, 0.0))};
+}
+
 std::vector<Albedo> BeckmannBrdf::energy(const std::vector<ViewQuery>& queries) {
   std::vector<Albedo> albedos(queries.size());
-  std::vector<BrdfQuery> drawn(kAlbedoSamples);
-  for (std::size_t n = 0; n < queries.size(); ++n) {
-    const ViewQuery& from = queries[n];
-    if (below_horizon(from.view)) continue;
-    tbb::parallel_for(0, kAlbedoSamples, [&](int k) {
-      const Eigen::Vector3d normal =
-          sampler_.draw(from.footprint, from.roughness, even_uniforms(1, k), synthesis::mix(k));
-      drawn[k] = {from.footprint, from.view, mirrored(from.view, normal), from.roughness};
-    });
-    double sum = 0;
-    for (const BrdfValue& value : evaluate(drawn))
-      if (value.pdf > 0) sum += value.single / value.pdf;
-    albedos[n].single = static_cast<float>(sum / kAlbedoSamples);
-    albedos[n].lost = std::max(1 - albedos[n].single, 0.0f);
-  }
+  for (std::size_t n = 0; n < queries.size(); ++n)
+    if (!below_horizon(queries[n].view)) albedos[n] = albedo(queries[n]);
   return albedos;
 }
 

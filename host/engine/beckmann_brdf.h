@@ -2,10 +2,12 @@
 
 #include <optional>
 
+#include "host/base/stopwatch.h"
 #include "host/engine/lobe_query.h"
 #include "host/engine/lobe_sampler.h"
 #include "host/engine/make_patch_brdf.h"
 #include "host/engine/map_batches.h"
+#include "host/engine/slope_footprint.h"
 
 namespace mica {
 
@@ -19,28 +21,40 @@ class BeckmannBrdf : public PatchBrdf {
   BeckmannBrdf(Device& device, const Surface& surface, const PatchBrdfSettings& settings);
 
   std::vector<BrdfValue> evaluate(const std::vector<BrdfQuery>& queries) override;
+  /// Light counts as the patch receives it, by its projected area A_P(i) and not by i.g: the two are the same
+  /// where the mean normal is g, and only with the first no patch scatters more than it gets.
   std::vector<Albedo> energy(const std::vector<ViewQuery>& queries) override;
   std::vector<BrdfSample> sample(const std::vector<SampleQuery>& queries) override;
 
   std::string name() const override { return "beckmanns"; }
-  std::size_t device_bytes() const override { return densities_->device_bytes(); }
+  std::size_t device_bytes() const override { return device_bytes_; }
   double build_seconds() const override { return build_seconds_; }
-  double device_seconds() const override { return densities_->device_seconds(); }
+  double device_seconds() const override {
+    return densities_ ? densities_->device_seconds() : patches_->device_seconds();
+  }
 
  private:
-  /// I of both directions of a query.
-  struct Areas {
-    double view = 0, light = 0;
+  /// D of a query's half vector, I of its directions, and the projected area A_P(i) of mean normals, Eq. 17.
+  struct Parts {
+    double density = 0, view_area = 0, light_area = 0, light_projected = 0;
   };
-  Areas geometric_areas(const BrdfQuery& query) const;
+  /// @param queries with both directions above the horizon.
+  std::vector<Parts> parts(const std::vector<BrdfQuery>& queries);
+  std::vector<Parts> geometric_parts(const std::vector<BrdfQuery>& queries);
+  Albedo albedo(const ViewQuery& from);
+  std::vector<Parts> patch_parts(const std::vector<BrdfQuery>& queries);
 
   Masking masking_;
+  Stopwatch watch_;      ///< of the constructor
   LobeStructure lobes_;  ///< also on the host: samples are drawn there
   LobeGrid grid_;
   LobeSampler sampler_;
+  std::vector<SlopeLevel> levels_;
   double squared_slope_ = 0;  ///< mean over the map
   double cutoff_, build_seconds_ = 0;
-  std::optional<MapBatches<device_types::mica_lobe_query>> densities_;
+  std::size_t device_bytes_ = 0;
+  std::optional<MapBatches<device_types::mica_lobe_query>> densities_;  ///< `geometric`
+  std::optional<MapBatches<device_types::mica_patch_query>> patches_;   ///< the others
 };
 
 }  // namespace mica

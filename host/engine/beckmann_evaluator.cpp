@@ -25,8 +25,9 @@ BeckmannEvaluator::BeckmannEvaluator(Device& device, const Surface& surface, con
 
 std::unique_ptr<PendingDensities> BeckmannEvaluator::start(const std::vector<Query>& queries) {
   std::vector<device_types::mica_lobe_query> lobe_queries(queries.size());
-  tbb::parallel_for(std::size_t{0}, queries.size(),
-                    [&](std::size_t n) { lobe_queries[n] = to_lobe_query(queries[n], grid_, cutoff_); });
+  tbb::parallel_for(std::size_t{0}, queries.size(), [&](std::size_t n) {
+    lobe_queries[n] = to_lobe_query(queries[n], lobe_weights(queries[n].footprint, grid_), grid_, cutoff_);
+  });
   return batches_->start(std::move(lobe_queries));
 }
 

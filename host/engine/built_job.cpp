@@ -6,6 +6,7 @@
 
 #include "host/base/stopwatch.h"
 #include "host/engine/make_evaluator.h"
+#include "host/engine/make_patch_brdf.h"
 #include "host/engine/ndf_brdf.h"
 
 namespace mica {
@@ -27,15 +28,25 @@ double masking_alpha(const Surface& surface, double roughness) {
 BuiltJob::BuiltJob(const Job& job, const Plan& plan, Device& device)
     : job_(job), plan_(plan), surfaces_(make_surfaces()), scene_(make_scene()) {
   const Stopwatch watch;
-  for (std::size_t n = 0; n < surfaces_.size(); ++n)
-    evaluators_.push_back(make_evaluator(plan.evaluators[n].evaluator, device, surfaces_[n]));
-  for (std::size_t n = 0; n < surfaces_.size() && plan.gathers_light; ++n) {
-    // Of the densities, that of triangles alone is that of the surface's normals, and not an approximation.
-    const auto draws = plan.evaluators[n].evaluator == "triangles" ? NdfBrdf::Draws::surface_normals
-                                                                   : NdfBrdf::Draws::smooth_lobe;
-    brdfs_.push_back(std::make_unique<NdfBrdf>(*evaluators_[n], surfaces_[n], draws));
-  }
+  for (std::size_t n = 0; n < surfaces_.size(); ++n) build(n, device);
   build_seconds_ = watch.seconds();
+}
+
+void BuiltJob::build(std::size_t n, Device& device) {
+  const PlannedEvaluator& planned = plan_.evaluators[n];
+  evaluators_.emplace_back();
+  brdfs_.emplace_back();
+  if (planned.asks_densities)
+    evaluators_[n] = make_evaluator(planned.evaluator, device, surfaces_[n], planned.elements);
+  if (planned.patch_brdf) {
+    brdfs_[n] = make_patch_brdf(planned.evaluator, device, surfaces_[n],
+                                {planned.masking, planned.elements, planned.compensation, planned.energy});
+  } else if (plan_.gathers_light) {
+    // Of the densities, that of triangles alone is that of the surface's normals, and not an approximation.
+    const auto draws =
+        planned.evaluator == "triangles" ? NdfBrdf::Draws::surface_normals : NdfBrdf::Draws::smooth_lobe;
+    brdfs_[n] = std::make_unique<NdfBrdf>(*evaluators_[n], surfaces_[n], draws);
+  }
 }
 
 std::vector<Surface> BuiltJob::make_surfaces() {
@@ -57,13 +68,17 @@ std::vector<Surface> BuiltJob::make_surfaces() {
 Scene BuiltJob::make_scene() {
   const Stopwatch watch;
   std::vector<double> alphas;
+  LightGathering gathering{plan_.gathers_light, {}};
   for (std::size_t n = 0; n < job_.scene.materials.size(); ++n) {
     const int evaluator = plan_.evaluator_of_material[n];
+    // A coat bends directions before they reach the patch, and is made for densities.
+    gathering.patch_materials.push_back(evaluator >= 0 && plan_.evaluators[evaluator].patch_brdf &&
+                                        !job_.scene.materials[n].coat);
     alphas.push_back(evaluator < 0 ? kUnusedAlpha
                                    : masking_alpha(surfaces_[evaluator], job_.scene.materials[n].roughness));
   }
   Scene scene(job_.scene, job_.image.width, job_.image.height, job_.image.subpixels, alphas,
-              {plan_.gathers_light, {}});
+              std::move(gathering));
   scene_seconds_ = watch.seconds();
   return scene;
 }
@@ -76,13 +91,19 @@ std::vector<const Surface*> BuiltJob::surfaces() const {
 
 std::size_t BuiltJob::device_bytes() const {
   std::size_t bytes = 0;
-  for (const auto& evaluator : evaluators_) bytes += evaluator->device_bytes();
+  for (std::size_t n = 0; n < evaluators_.size(); ++n) {
+    if (evaluators_[n]) bytes += evaluators_[n]->device_bytes();
+    if (plan_.evaluators[n].patch_brdf) bytes += brdfs_[n]->device_bytes();
+  }
   return bytes;
 }
 
 double BuiltJob::device_seconds() const {
   double seconds = 0;
-  for (const auto& evaluator : evaluators_) seconds += evaluator->device_seconds();
+  for (std::size_t n = 0; n < evaluators_.size(); ++n) {
+    if (evaluators_[n]) seconds += evaluators_[n]->device_seconds();
+    if (plan_.evaluators[n].patch_brdf) seconds += brdfs_[n]->device_seconds();
+  }
   return seconds;
 }
 

@@ -23,9 +23,11 @@ class BuiltJob {
   const Job& job() const { return job_; }
   const Plan& plan() const { return plan_; }
   const Scene& scene() const { return scene_; }
-  Evaluator& evaluator(std::size_t n) const { return *evaluators_[n]; }  ///< by PlannedEvaluator
-  PatchBrdf& brdf(std::size_t n) const { return *brdfs_[n]; }            ///< the same; if light is gathered
-  std::vector<const Surface*> surfaces() const;                          ///< by PlannedEvaluator
+  /// By PlannedEvaluator; only one that asks for densities.
+  Evaluator& evaluator(std::size_t n) const { return *evaluators_[n]; }
+  /// By PlannedEvaluator; of one that is a patch BRDF, and of all when light is gathered.
+  PatchBrdf& brdf(std::size_t n) const { return *brdfs_[n]; }
+  std::vector<const Surface*> surfaces() const;  ///< by PlannedEvaluator
 
   double surface_seconds() const { return surface_seconds_; }
   double scene_seconds() const { return scene_seconds_; }
@@ -38,6 +40,7 @@ class BuiltJob {
 
  private:
   std::vector<Surface> make_surfaces();
+  void build(std::size_t n, Device& device);
   Scene make_scene();
 
   const Job& job_;

@@ -31,10 +31,16 @@ LobeWeights lobe_weights(const Footprint& footprint, const LobeGrid& lobes) {
   return weights;
 }
 
-device_types::mica_lobe_query to_lobe_query(const Query& query, const LobeGrid& lobes, double cutoff) {
+HalfSlope to_half_slope(const Eigen::Vector2d& half_vector) {
+  const double squared_cosine = 1 - half_vector.squaredNorm();
+  if (!(squared_cosine > kLeastCosine * kLeastCosine)) return {};
+  return {-half_vector / std::sqrt(squared_cosine), 1 / (squared_cosine * squared_cosine)};
+}
+
+device_types::mica_lobe_query to_lobe_query(const Query& query, const LobeWeights& weights,
+                                            const LobeGrid& lobes, double cutoff) {
   device_types::mica_lobe_query result{};
   device_types::mica_map_query& map = result.map;
-  const LobeWeights weights = lobe_weights(query.footprint, lobes);
   map.mean_i = weights.mean_i, map.mean_j = weights.mean_j;
   map.mean_x = weights.mean_x, map.mean_y = weights.mean_y;
   const Eigen::Vector2d row_1 = weights.axes.col(0) / weights.sigma[0],
@@ -47,21 +53,16 @@ device_types::mica_lobe_query to_lobe_query(const Query& query, const LobeGrid& 
   map.inverse_roughness = static_cast<float>(1 / query.roughness);
   map.cutoff = static_cast<float>(cutoff);
 
-  // D = P22 / cos^4. [Che18] Eq. 2
-  const double squared_cosine = 1 - query.half_vector.squaredNorm();
-  const bool on_hemisphere = squared_cosine > kLeastCosine * kLeastCosine;
-  const double cosine = std::sqrt(on_hemisphere ? squared_cosine : 1.0);
-  const Eigen::Vector2d slope =
-      on_hemisphere ? Eigen::Vector2d(-query.half_vector / cosine) : Eigen::Vector2d::Zero();
+  const HalfSlope half = to_half_slope(query.half_vector);
+  const Eigen::Vector2d& slope = half.slope;
   result.slope_x = static_cast<float>(slope.x()), result.slope_y = static_cast<float>(slope.y());
   result.slope_rest_x = static_cast<float>(slope.x() - result.slope_x);
   result.slope_rest_y = static_cast<float>(slope.y() - result.slope_y);
   result.slope_unit = lobes.slope_unit;
   const double spread_unit = lobes.spread_unit / query.roughness;
   result.spread_variance = static_cast<float>(spread_unit * spread_unit);
-  if (on_hemisphere)
-    map.scale = static_cast<float>(1 / (4 * kPi * kPi * weights.sigma[0] * weights.sigma[1] * weights.sum *
-                                        query.roughness * query.roughness * std::pow(cosine, 4)));
+  map.scale = static_cast<float>(half.to_density / (4 * kPi * kPi * weights.sigma[0] * weights.sigma[1] *
+                                                    weights.sum * query.roughness * query.roughness));
   return result;
 }
 

@@ -32,8 +32,18 @@ struct LobeWeights {
 };
 LobeWeights lobe_weights(const Footprint& footprint, const LobeGrid& lobes);
 
+/// The slope of a half vector, and what a density of slopes there is multiplied with to be one on the disk:
+/// 1 / cos^4 [Che18 Eq. 2], or 0 at the horizon and beyond.
+struct HalfSlope {
+  Eigen::Vector2d slope = Eigen::Vector2d::Zero();
+  double to_density = 0;
+};
+HalfSlope to_half_slope(const Eigen::Vector2d& half_vector);
+
 /// The query in the kernel's form.
+/// @param weights of its footprint.
 /// @param cutoff largest sum of squared distances that counts, see `cutoff_for`.
-device_types::mica_lobe_query to_lobe_query(const Query& query, const LobeGrid& lobes, double cutoff);
+device_types::mica_lobe_query to_lobe_query(const Query& query, const LobeWeights& weights,
+                                            const LobeGrid& lobes, double cutoff);
 
 }  // namespace mica

@@ -61,27 +61,34 @@ long pick_on_lattice(double mean, double sigma, double uniform) {
   return high;
 }
 
-Eigen::Vector3d LobeSampler::draw(const Footprint& footprint, double roughness,
-                                  const std::array<double, 4>& uniforms, std::uint64_t key) const {
-  const LobeWeights weights = lobe_weights(footprint, grid_);
-  const Eigen::Matrix2d covariance = weights.covariance();
+LatticePoint pick_on_lattice(const Eigen::Vector2d& mean, const Eigen::Matrix2d& covariance,
+                             const std::array<double, 2>& uniforms, std::uint64_t key) {
   const double row_variance = covariance(1, 1), shear = covariance(0, 1) / row_variance;
   const double column_variance = covariance.determinant() / row_variance;
   const double largest_ripple = ripple(column_variance, 0);
-  // Element n has its centre at n + 1/2. The sum over a row ripples with where its mean lies.
+  // The sum over a row ripples with where its mean lies.
   double row_uniform = uniforms[0];
-  long row = 0;
-  double column_mean = 0;
   for (std::uint64_t attempt = 1;; ++attempt) {
-    row = pick_on_lattice(weights.mean_y - 0.5, std::sqrt(row_variance), row_uniform);
-    column_mean = weights.mean_x - 0.5 + shear * (static_cast<double>(row) + 0.5 - weights.mean_y);
+    LatticePoint point;
+    point.j = pick_on_lattice(mean.y(), std::sqrt(row_variance), row_uniform);
+    const double column_mean = mean.x() + shear * (static_cast<double>(point.j) - mean.y());
     const double accepted = (1 + ripple(column_variance, column_mean)) / (1 + largest_ripple);
-    if (synthesis::random_unit(key, 0, attempt) < accepted) break;
+    if (synthesis::random_unit(key, 0, attempt) < accepted) {
+      point.i = pick_on_lattice(column_mean, std::sqrt(column_variance), uniforms[1]);
+      return point;
+    }
     row_uniform = synthesis::random_unit(key, 1, attempt);
   }
-  const long column = pick_on_lattice(column_mean, std::sqrt(column_variance), uniforms[1]);
-  const Lobe lobe = structure_.lobe(static_cast<int>(wrap(weights.mean_i + column, grid_.grid.width)),
-                                    static_cast<int>(wrap(weights.mean_j + row, grid_.grid.height)));
+}
+
+Eigen::Vector3d LobeSampler::draw(const Footprint& footprint, double roughness,
+                                  const std::array<double, 4>& uniforms, std::uint64_t key) const {
+  const LobeWeights weights = lobe_weights(footprint, grid_);
+  // Element n has its centre at n + 1/2.
+  const LatticePoint element = pick_on_lattice(Eigen::Vector2d(weights.mean_x - 0.5, weights.mean_y - 0.5),
+                                               weights.covariance(), {uniforms[0], uniforms[1]}, key);
+  const Lobe lobe = structure_.lobe(static_cast<int>(wrap(weights.mean_i + element.i, grid_.grid.width)),
+                                    static_cast<int>(wrap(weights.mean_j + element.j, grid_.grid.height)));
 
   // Two normal numbers, times the Cholesky factor of S + sigma_r^2 I, times B.
   const double radius = std::sqrt(-2 * std::log1p(-uniforms[2])), angle = 2 * kPi * uniforms[3];

@@ -12,6 +12,16 @@ namespace mica {
 /// @param sigma at least 0.4; @param uniform in [0, 1).
 long pick_on_lattice(double mean, double sigma, double uniform);
 
+/// A point of the lattice of integers, drawn with a probability in proportion to exp(-d^T C^-1 d / 2), d its
+/// difference from the mean.
+struct LatticePoint {
+  long i = 0, j = 0;
+};
+/// @param covariance C; at least 0.16 in every direction. @param uniforms in [0, 1). @param key of the random
+/// numbers that are drawn besides: few points are refused, and drawn anew.
+LatticePoint pick_on_lattice(const Eigen::Vector2d& mean, const Eigen::Matrix2d& covariance,
+                             const std::array<double, 2>& uniforms, std::uint64_t key);
+
 /// Draws normals of a footprint on a mixture of lobes: an element by its weight, then a slope of its lobe.
 /// [Che18] sec. 5, where the normal is that of a point under the footprint; here the density is that of the
 /// mixture itself, without a rest.

@@ -7,12 +7,13 @@
 #include "host/engine/beckmann_evaluator.h"
 #include "host/engine/mixture_evaluator.h"
 #include "host/engine/pyramid_evaluator.h"
+#include "host/engine/smooth_evaluator.h"
 #include "host/engine/triangle_evaluator.h"
 
 namespace mica {
 
 const std::vector<std::string>& evaluator_names() {
-  static const std::vector<std::string> names = {"triangles", "gaussians", "beckmanns", "pyramid"};
+  static const std::vector<std::string> names = {"triangles", "gaussians", "beckmanns", "smooth", "pyramid"};
   return names;
 }
 
@@ -24,6 +25,7 @@ std::unique_ptr<Evaluator> make_evaluator(const std::string& name, Device& devic
   mixture.elements = elements;
   if (name == "gaussians") return std::make_unique<GaussianEvaluator>(device, surface, mixture);
   if (name == "beckmanns") return std::make_unique<BeckmannEvaluator>(device, surface, mixture);
+  if (name == "smooth") return std::make_unique<SmoothEvaluator>(device, surface, mixture);
   throw UsageError(
       fmt::format("there is no evaluator \"{}\"; available: {}", name, fmt::join(evaluator_names(), ", ")));
 }

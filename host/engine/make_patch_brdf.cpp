@@ -5,6 +5,7 @@
 
 #include "host/base/error.h"
 #include "host/engine/beckmann_brdf.h"
+#include "host/engine/cavity_brdf.h"
 #include "host/engine/map_query.h"
 
 namespace mica {
@@ -15,13 +16,20 @@ const std::vector<std::string>& masking_names() {
 }
 
 const std::vector<std::string>& patch_brdf_names() {
-  static const std::vector<std::string> names = {"beckmanns"};
+  static const std::vector<std::string> names = {"beckmanns", "cavities"};
   return names;
 }
 
 std::unique_ptr<PatchBrdf> make_patch_brdf(const std::string& name, Device& device, const Surface& surface,
                                            const PatchBrdfSettings& settings) {
   if (name == "beckmanns") return std::make_unique<BeckmannBrdf>(device, surface, settings);
+  if (name == "cavities") {
+    CavitySettings cavities;
+    cavities.compensation = settings.compensation;
+    cavities.energy = settings.energy;
+    cavities.per_texel = settings.elements;
+    return std::make_unique<CavityBrdf>(device, surface, cavities);
+  }
   throw UsageError(
       fmt::format("\"{}\" has no BRDF of its own; available: {}", name, fmt::join(patch_brdf_names(), ", ")));
 }

@@ -4,25 +4,22 @@
 #include <string>
 #include <vector>
 
+#include "host/base/cavities.h"
+#include "host/base/masking.h"
 #include "host/device/device.h"
 #include "host/engine/patch_brdf.h"
 #include "host/surface/surface.h"
 
 namespace mica {
 
-/// Where a patch BRDF's masking and projected areas come from.
-enum class Masking {
-  exact,     ///< every lobe under the footprint. [Che18] Eqs. 10-17
-  filtered,  ///< one lobe that has the moments of the footprint's slopes. [Che18] sec. 4.2.2
-  geometric  ///< one roughness for the whole map, and cosines to the geometric normal. [Yan14] Eq. 1
-};
-
 /// "exact", "filtered" and "geometric", in the order of Masking.
 const std::vector<std::string>& masking_names();
 
 struct PatchBrdfSettings {
   Masking masking = Masking::exact;
-  int elements = 1;  ///< of a mixture, a texel and axis
+  int elements = 1;  ///< of a mixture, or seeds of cavities, a texel and axis
+  Compensation compensation = Compensation::diffuse;  ///< of cavities
+  LostEnergy energy = LostEnergy::exact;              ///< of cavities
 };
 
 /// Names that `make_patch_brdf` takes.

@@ -5,13 +5,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace mica {
 namespace {
 
+using device_types::mica_cavity_query;
 using device_types::mica_lobe_query;
 using device_types::mica_map_query;
 using device_types::mica_mixture_query;
+using device_types::mica_patch_query;
+using device_types::mica_smooth_query;
 
 constexpr std::size_t kWaveLanes = 16;
 constexpr std::size_t kCpuGroup = 16;  // queries a work-group on a CPU
@@ -31,6 +35,15 @@ mica_map_query& place_of(mica_mixture_query& query) {
   return query.map;
 }
 mica_map_query& place_of(mica_lobe_query& query) {
+  return query.map;
+}
+mica_map_query& place_of(mica_cavity_query& query) {
+  return query.map;
+}
+mica_map_query& place_of(mica_patch_query& query) {
+  return query.lobe.map;
+}
+mica_map_query& place_of(mica_smooth_query& query) {
   return query.map;
 }
 
@@ -85,11 +98,13 @@ class MapBatches<DeviceQuery>::Densities : public PendingDensities {
     } catch (const cl::Error& error) {
       throw opencl_error(error, "evaluating " + method);
     }
-    // A density is finite and not negative: rounding may leave -0 or a denormal, never more.
+    // A density is finite and not negative: rounding may leave -0 or a denormal, never more. Several numbers
+    // are something else, and have signs.
+    const float least = answers == 1 ? 0.0f : -std::numeric_limits<float>::infinity();
     std::vector<float> ordered(results.size());
     for (std::size_t n = 0; n < results.size(); ++n) {
       if (!std::isfinite(results[n])) throw DeviceError("evaluating " + method + ": a density is not finite");
-      ordered[order[n / answers] * answers + n % answers] = std::max(results[n], 0.0f);
+      ordered[order[n / answers] * answers + n % answers] = std::max(results[n], least);
     }
     return ordered;
   }
@@ -184,5 +199,8 @@ void MapBatches<DeviceQuery>::enqueue(std::size_t first, Densities* pending) {
 template class MapBatches<mica_map_query>;
 template class MapBatches<mica_mixture_query>;
 template class MapBatches<mica_lobe_query>;
+template class MapBatches<mica_cavity_query>;
+template class MapBatches<mica_patch_query>;
+template class MapBatches<mica_smooth_query>;
 
 }  // namespace mica

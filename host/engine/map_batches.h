@@ -26,7 +26,8 @@ class MapBatches {
 
   /// The same for a kernel with other buffers between the grid and the densities.
   /// @param structure its buffers, in the order of its arguments; @param bytes of all of them.
-  /// @param answers floats a query that the kernel writes, to density[slot * answers] and on.
+  /// @param answers floats a query that the kernel writes, to density[slot * answers] and on; negative ones
+  /// only where there are several.
   MapBatches(Device& device, const device_types::mica_map_grid& grid, std::vector<cl::Buffer> structure,
              std::size_t bytes, const std::string& method, const std::string& options, WaveForm wave_form,
              std::size_t batch_queries, std::size_t answers = 1);
@@ -55,5 +56,8 @@ class MapBatches {
 extern template class MapBatches<device_types::mica_map_query>;
 extern template class MapBatches<device_types::mica_mixture_query>;
 extern template class MapBatches<device_types::mica_lobe_query>;
+extern template class MapBatches<device_types::mica_cavity_query>;
+extern template class MapBatches<device_types::mica_patch_query>;
+extern template class MapBatches<device_types::mica_smooth_query>;
 
 }  // namespace mica

@@ -6,7 +6,12 @@
 #include <algorithm>
 #include <set>
 
+#include "host/build/footprint_energy.h"
+#include "host/build/lobes.h"
 #include "host/build/map_structure.h"
+#include "host/build/mixture.h"
+#include "host/build/slope_pyramid.h"
+#include "host/engine/make_patch_brdf.h"
 #include "host/scene/scene.h"
 #include "host/surface/map_size.h"
 #include "kernels/types.h"
@@ -29,19 +34,45 @@ const char* name_of(Interpolation interpolation) {
   return "";
 }
 
-PlannedEvaluator plan_evaluator(const Job& job, int surface_index, const std::string& evaluator) {
+/// What the evaluator takes on the device, and its kernel.
+void plan_structure(PlannedEvaluator* planned) {
+  const int width = planned->width, height = planned->height, elements = planned->elements;
+  planned->kernel = planned->evaluator + ".cl";
+  if (planned->evaluator == "beckmanns") {
+    const std::size_t lobes = lobe_structure_bytes(width, height, elements);
+    planned->device_bytes = (planned->asks_densities ? 2 : 1) * lobes;
+    if (planned->masking != Masking::geometric) {
+      planned->device_bytes += slope_pyramid_bytes(width * elements, height * elements, false);
+      planned->kernel = "beckmann_patches.cl";
+    }
+  } else if (planned->evaluator == "smooth") {
+    planned->device_bytes = slope_pyramid_bytes(width * elements, height * elements, true);
+  } else if (planned->evaluator == "cavities") {
+    planned->device_bytes = map_structure_bytes(width, height);
+    if (planned->energy == LostEnergy::table) planned->host_bytes += footprint_energy_bytes(width, height);
+    planned->kernel += fmt::format(" -DMICA_INTERPOLATION={} -DMICA_SEEDS={}",
+                                   static_cast<int>(planned->interpolation), elements);
+  } else {
+    planned->device_bytes = planned->evaluator == "gaussians" ? gaussian_mixture_bytes(width, height)
+                                                              : map_structure_bytes(width, height);
+    planned->kernel += fmt::format(" -DMICA_INTERPOLATION={}", static_cast<int>(planned->interpolation));
+  }
+}
+
+PlannedEvaluator plan_evaluator(const Job& job, int surface_index, const MaterialDescription& material) {
   const SurfaceDescription& surface = job.surfaces[surface_index];
   const MapSize size = map_size(surface);
   PlannedEvaluator planned;
   planned.surface = surface.name;
-  planned.evaluator = evaluator;
+  planned.evaluator = material.ndf;
+  planned.elements = material.elements, planned.masking = material.masking;
+  planned.compensation = material.compensation, planned.energy = material.energy;
+  const std::vector<std::string>& patches = patch_brdf_names();
+  planned.patch_brdf = std::find(patches.begin(), patches.end(), material.ndf) != patches.end();
   planned.surface_index = surface_index;
   planned.width = size.width, planned.height = size.height;
   planned.interpolation = surface.interpolation;
-  planned.kernel =
-      fmt::format("{}.cl -DMICA_INTERPOLATION={}", evaluator, static_cast<int>(surface.interpolation));
   planned.host_bytes = sizeof(Eigen::Vector2d) * size.width * size.height;
-  planned.device_bytes = map_structure_bytes(size.width, size.height);
   return planned;
 }
 
@@ -52,11 +83,15 @@ int evaluator_for(const Job& job, const MaterialDescription& material,
                                     [&](const SurfaceDescription& s) { return s.name == material.surface; });
   const int surface_index = static_cast<int>(surface - job.surfaces.begin());
   const auto found = std::find_if(planned->begin(), planned->end(), [&](const PlannedEvaluator& p) {
-    return p.surface_index == surface_index && p.evaluator == material.ndf;
+    return p.surface_index == surface_index && p.evaluator == material.ndf &&
+           p.elements == material.elements && p.masking == material.masking &&
+           p.compensation == material.compensation && p.energy == material.energy;
   });
   const int index = static_cast<int>(found - planned->begin());
-  if (found == planned->end()) planned->push_back(plan_evaluator(job, surface_index, material.ndf));
-  (*planned)[index].materials.push_back(material.name);
+  if (found == planned->end()) planned->push_back(plan_evaluator(job, surface_index, material));
+  PlannedEvaluator& used = (*planned)[index];
+  used.materials.push_back(material.name);
+  used.asks_densities |= !used.patch_brdf || material.coat.has_value();
   return index;
 }
 
@@ -102,7 +137,8 @@ Plan make_plan(const Job& job) {
       static_cast<int>(std::clamp<std::size_t>(kQueriesABatch / queries_a_row, 1, job.image.height));
 
   const std::size_t block = plan.rows_a_block * queries_a_row;
-  for (const PlannedEvaluator& evaluator : plan.evaluators) {
+  for (PlannedEvaluator& evaluator : plan.evaluators) {
+    plan_structure(&evaluator);
     plan.host_bytes += evaluator.host_bytes;
     plan.device_bytes += evaluator.device_bytes;
   }

@@ -13,6 +13,12 @@ struct PlannedEvaluator {
   std::string surface;    ///< name in the job
   std::string evaluator;  ///< e.g. "triangles"
   int surface_index = 0;  ///< into Job::surfaces
+  int elements = 1;       ///< of a mixture, a texel and axis
+  Masking masking = Masking::exact;
+  Compensation compensation = Compensation::diffuse;
+  LostEnergy energy = LostEnergy::exact;
+  bool patch_brdf = false;      ///< it is one of patch_brdf_names(), and lights are multiplied with its BRDF
+  bool asks_densities = false;  ///< a material multiplies lights with its density
   int width = 0, height = 0;
   Interpolation interpolation = Interpolation::bilinear;
   std::string kernel;          ///< file and options
@@ -30,7 +36,7 @@ struct Plan {
   std::vector<int> evaluator_of_material;  ///< by index of SceneDescription::materials; -1: not used
   std::vector<std::string> channels;       ///< of the image, in order
   bool gathers_light = false;              ///< from all around: `samples` a footprint
-  int samples = 0, max_bounces = 1;              ///< as the job asks for
+  int samples = 0, max_bounces = 1;        ///< as the job asks for
   Techniques techniques = Techniques::both;
   int rows_a_block = 0;                          ///< image rows that are traced and evaluated together
   std::size_t queries_a_batch = 0;               ///< of one kernel launch, at most

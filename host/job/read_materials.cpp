@@ -8,6 +8,11 @@ namespace mica {
 namespace {
 
 const Interval reflectance = closed(0, 1);
+const Choices<Masking> maskings = {
+    {"exact", Masking::exact}, {"filtered", Masking::filtered}, {"geometric", Masking::geometric}};
+const Choices<Compensation> compensations = {{"diffuse", Compensation::diffuse},
+                                             {"specular", Compensation::specular}};
+const Choices<LostEnergy> energies = {{"exact", LostEnergy::exact}, {"table", LostEnergy::table}};
 
 Fresnel read_conductor(TableReader& specular) {
   ConductorFresnel conductor;
@@ -47,9 +52,9 @@ CoatDescription read_coat(TableReader& table) {
 }
 
 void read_evaluator(TableReader& material, std::string& ndf) {
-  const std::vector<std::string_view> available = {"triangles"};
-  const std::vector<std::string_view> planned = {"auto", "gaussians", "beckmanns", "cavities",
-                                                 "grid", "smooth",    "pyramid",   "reference"};
+  const std::vector<std::string_view> available = {"triangles", "gaussians", "beckmanns", "smooth",
+                                                   "cavities"};
+  const std::vector<std::string_view> planned = {"auto", "grid", "pyramid", "reference"};
   std::string word = ndf;
   material.read("ndf", word);
   if (std::find(available.begin(), available.end(), word) != available.end()) {
@@ -61,6 +66,28 @@ void read_evaluator(TableReader& material, std::string& ndf) {
                   fmt::format("found {}{}; expected an evaluator that is available: {}{}", in_quotes(word),
                               is_planned ? ", which is not available in this version" : "", joined(available),
                               did_you_mean(word, available)));
+}
+
+/// Mixtures have no lobes for Catmull-Rom patches.
+void refuse_bicubic(TableReader& table, const MaterialDescription& material,
+                    const std::vector<SurfaceDescription>& surfaces) {
+  if (material.ndf == "triangles") return;
+  for (const SurfaceDescription& surface : surfaces)
+    if (surface.name == material.surface && surface.interpolation == Interpolation::bicubic)
+      table.report("ndf",
+                   fmt::format("found {} on surface {}, which is bicubic; expected a nearest or bilinear "
+                               "surface, or triangles",
+                               in_quotes(material.ndf), in_quotes(surface.name)));
+}
+
+void read_cavities(TableReader& table, MaterialDescription& material) {
+  table.read("compensation", material.compensation, compensations);
+  table.read("energy", material.energy, energies);
+  double spacing = 1;
+  table.read("spacing", spacing, open_low(0, 1));
+  if (spacing != 1 && spacing != 0.5)
+    table.report("spacing", fmt::format("found {}; expected 1 or 0.5 texels", spacing));
+  material.elements = spacing == 1 ? 1 : 2;
 }
 
 }  // namespace
@@ -78,10 +105,19 @@ std::vector<MaterialDescription> read_materials(TableReader& job,
     table.read_reference("surface", material.surface, "surface", surface_names);
     table.read("repeat", material.repeat, open_low(0, 1e6));
     read_evaluator(table, material.ndf);
+    refuse_bicubic(table, material, surfaces);
+    if (material.ndf == "cavities") {
+      read_cavities(table, material);
+    } else {
+      table.read("masking", material.masking, maskings);
+      table.read("elements", material.elements, closed(1, 4));
+    }
     table.read("roughness", material.roughness, closed(1e-4, 1));
     table.read_table("specular", [&](TableReader& specular) { material.specular = read_specular(specular); });
     table.read("diffuse", material.diffuse, reflectance);
     table.read_table("coat", [&](TableReader& coat) { material.coat = read_coat(coat); });
+    if (material.coat && material.ndf == "cavities")
+      table.report("coat", "found one on cavities; expected none, or an ndf with a density");
     materials.push_back(std::move(material));
   });
   return materials;

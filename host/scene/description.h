@@ -6,6 +6,9 @@
 #include <variant>
 #include <vector>
 
+#include "host/base/cavities.h"
+#include "host/base/masking.h"
+
 namespace mica {
 
 /// Linear RGB, or any per-channel triple.
@@ -40,10 +43,14 @@ struct CoatDescription {
 /// `[material.NAME]`
 struct MaterialDescription {
   std::string name;
-  std::string surface;            ///< name of a surface
-  Eigen::Vector2d repeat{1, 1};   ///< map periods over the shape's uv
-  std::string ndf = "triangles";  ///< evaluator
-  double roughness = 0.01;        ///< sigma_r on the disk
+  std::string surface;               ///< name of a surface
+  Eigen::Vector2d repeat{1, 1};      ///< map periods over the shape's uv
+  std::string ndf = "triangles";     ///< evaluator
+  Masking masking = Masking::exact;  ///< of an evaluator with a BRDF of its own
+  int elements = 1;                  ///< of a mixture, or seeds of cavities, a texel and axis
+  Compensation compensation = Compensation::diffuse;  ///< of cavities
+  LostEnergy energy = LostEnergy::exact;              ///< of cavities
+  double roughness = 0.01;                            ///< sigma_r on the disk
   Fresnel specular = ColorFresnel{};
   Color diffuse{0, 0, 0};  ///< Lambertian albedo
   std::optional<CoatDescription> coat = {};

@@ -110,7 +110,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"UnknownOption", kEval + "--map map.exr --queries good.npy --colour red", kUsage, "--colour"},
         Refusal{"UnknownNdf", "eval --ndf circles --map map.exr --queries good.npy -o D.npy", kUsage,
                 "triangles"},
-        Refusal{"UnknownQuantity", kEval + "--quantity brdf --map map.exr --queries good.npy", kUsage, "ndf"},
+        Refusal{"UnknownQuantity", kEval + "--quantity albedo --map map.exr --queries good.npy", kUsage, "ndf"},
         Refusal{"UnknownEncoding", kEval + "--encoding guess --map map.exr --queries good.npy", kUsage,
                 "unorm"},
         Refusal{"RoughnessMissing", "eval --ndf triangles --map map.exr --queries good.npy -o D.npy", kUsage,

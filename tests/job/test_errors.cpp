@@ -45,7 +45,8 @@ const std::vector<Mistake> unknown_keys = {
     {"\"bumps\"", "\"bumps\"\nspecular = { ior = 1.5, @kk = 1 }",
      "material.gold.specular.kk: found an unknown key; expected \"ior\""},
     {"\"bumps\"", "\"bumps\"\n@\"a b\" = 1",
-     "material.gold.\"a b\": found an unknown key; expected one of: surface, repeat, ndf, roughness, "
+     "material.gold.\"a b\": found an unknown key; expected one of: surface, repeat, ndf, masking, "
+     "elements, roughness, "
      "specular, "
      "diffuse, coat"},
 };
@@ -72,7 +73,8 @@ const std::vector<Mistake> wrong_types = {
      "queries"},
     {"\"bumps\"", "@[\"bumps\"]",
      "material.gold.surface: found an array; expected a string that is not empty"},
-    {"\"sphere\"", "@1", "shape.0.type: found 1; expected one of: plane, sphere, shell, jar, spoon, fork, mesh"},
+    {"\"sphere\"", "@1",
+     "shape.0.type: found 1; expected one of: plane, sphere, shell, jar, spoon, fork, mesh"},
     {"[surface.bumps]", "[surface]\nextra = @1\n[surface.bumps]",
      "surface.extra: found 1; expected a table, headed [surface.NAME]"},
     {"[[light]]", "@[light]", "light: found a table; expected an array of tables, each headed [[light]]"},
@@ -193,14 +195,13 @@ const std::vector<Mistake> wrong_words = {
      "\"bumps\"?)"},
     {"material = \"gold\"", "material = @\"silver\"",
      "shape.0.material: found \"silver\"; expected the name of a material, \"gold\""},
-    {"\"bumps\"", "\"bumps\"\nndf = @\"gaussians\"",
-     "material.gold.ndf: found \"gaussians\", which is not available in this version; expected an evaluator "
+    {"\"bumps\"", "\"bumps\"\nndf = @\"pyramid\"",
+     "material.gold.ndf: found \"pyramid\", which is not available in this version; expected an evaluator "
      "that "
-     "is available: triangles"},
+     "is available: triangles, gaussians, beckmanns, smooth"},
     {"\"bumps\"", "\"bumps\"\nndf = @\"triangle\"",
-     "material.gold.ndf: found \"triangle\"; expected an evaluator that is available: triangles (did you "
-     "mean "
-     "\"triangles\"?)"},
+     "material.gold.ndf: found \"triangle\"; expected an evaluator that is available: triangles, gaussians, "
+     "beckmanns, smooth (did you mean \"triangles\"?)"},
     {"", "[image]\naovs = [\"uv\", @\"depth\"]",
      "image.aovs.1: found \"depth\" (a string); expected one of: ndf, uv, footprint, normal, queries"},
     {"", "[image]\naovs = [\"uv\", @\"uv\"]", "image.aovs.1: found \"uv\" again; expected each at most once"},

@@ -1,0 +1,17 @@
+#pragma once
+
+namespace mica {
+
+/// Where the light goes that bounces more than once inside V-shaped cavities: f_2+. [Che19] secs. 3.5 and 5.2
+enum class Compensation {
+  diffuse,  ///< in all directions alike
+  specular  ///< about the mirror image in the geometric normal, blurred like the facets
+};
+
+/// Where the energy comes from that one bounce loses under a footprint.
+enum class LostEnergy {
+  exact,  ///< every seed under the footprint. [Che19] Eq. 15
+  table   ///< Gaussians with the moments of the footprint's slopes. [Che19] Eq. 18
+};
+
+}  // namespace mica

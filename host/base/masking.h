@@ -1,0 +1,12 @@
+#pragma once
+
+namespace mica {
+
+/// Where a patch BRDF's masking and projected areas come from.
+enum class Masking {
+  exact,     ///< every lobe under the footprint. [Che18] Eqs. 10-17
+  filtered,  ///< one lobe that has the moments of the footprint's slopes. [Che18] sec. 4.2.2
+  geometric  ///< one roughness for the whole map, and cosines to the geometric normal. [Yan14] Eq. 1
+};
+
+}  // namespace mica

@@ -1,0 +1,169 @@
+// What the BRDF of a patch is made of, [Che18] Eq. 7, on a mixture of Beckmann lobes: the density D_P of its half vector,
+// as beckmanns.cl has it, the areas I(o), I(i) that view and light see of its microsurface, [Che18] Eqs. 11-13, and the
+// projected area A_P(i) of its mean normals, Eq. 17.
+//
+// I is linear in the mean slope, o_z - p.o_xy, but for the lobes that lie close to edge-on or face away. So the mean comes
+// from the pyramid of slopes, and only those lobes are visited besides; all of them where the footprint is too small for the
+// pyramid, or seen so flat that the sum would be a small difference.
+
+// 1: I is that of one lobe with the moments of the footprint's slopes, [Che18] sec. 4.2.2; 2: of every lobe.
+#ifndef MICA_MASKING
+#define MICA_MASKING 2
+#endif
+#if MICA_MASKING == 1
+#define MICA_SLOPE_REACH 3.5f
+#endif
+
+#include "footprint_slopes.h"
+#include "lobe.h"
+#include "lobe_bound.h"
+#include "types.h"
+#include "visible_area.h"
+#include "wave.h"
+
+// Least o_z - p.o_xy of the mean slope p at which most lobes are left out.
+#define LEAST_FACING 0.1f
+// Standard deviations beyond which a lobe faces a direction as a whole; it hides 4e-7 of its width.
+#define FACING_DEVIATIONS 4.5f
+
+typedef struct {
+  wave_float density, view, light, projected;
+  int all;  // lobes are visited
+  uint dense, turned;  // the leaves, of the tile that is visited, that matter to the density and to the areas
+} leaf_results;
+
+// Lanes of the children with lobes that do not face direction (o_x, o_y, o_z) as a whole.
+static inline wave_int turn_away(global const mica_lobe_query* query, const private lobe_children* c, float o_x, float o_y,
+                                 float o_z) {
+  const wave_float along_min = min(o_x * c->x_min, o_x * c->x_max) + min(o_y * c->y_min, o_y * c->y_max);
+  const wave_float along_max = max(o_x * c->x_min, o_x * c->x_max) + max(o_y * c->y_min, o_y * c->y_max);
+  const wave_float along = max(fabs(along_min), fabs(along_max));
+  // |B o|^2 (S + sigma_r^2) at most
+  const wave_float stretch = c->w * fma((1.0f + c->w) * along, along, fma(o_x, o_x, o_y * o_y));
+  const float to_roughness = 1.0f / query->map.inverse_roughness;
+  const wave_float variance = to_roughness * to_roughness * fma(query->spread_variance * c->spread, c->spread, 1.0f);
+  const wave_float facing = max(o_z - along_max, 0.0f);
+  return wave_mask(facing * facing <= FACING_DEVIATIONS * FACING_DEVIATIONS * stretch * variance);
+}
+
+static inline uint surviving_lobes(global const mica_patch_query* query, private leaf_results* results,
+                                   global const short* node, int i, int j, int child_size, WAVE_SHARED int* scratch) {
+  const lobe_children c = load_children(&query->lobe, node, i, j, child_size);
+  const wave_int near = c.present & wave_mask(c.q_position <= query->lobe.map.cutoff);
+  results->dense = wave_ballot(matter_to_density(&query->lobe, &c), scratch);
+  results->turned = 0;
+  if (results->all) {
+    results->turned = wave_ballot(near, scratch);
+  } else if (MICA_MASKING == 2) {
+    results->turned =
+        wave_ballot(near & (turn_away(&query->lobe, &c, query->view_x, query->view_y, query->view_z) |
+                            turn_away(&query->lobe, &c, query->light_x, query->light_y, query->light_z)),
+                    scratch);
+  }
+  return results->dense | results->turned;
+}
+
+// Areas of lobes that a direction sees, and projected areas of their mean normals; both less the part that is linear in the
+// mean unless all lobes are visited.
+static inline wave_float lobe_areas(const private lobe_leaf* lobes, float roughness, int all, float o_x, float o_y,
+                                    float o_z, private wave_float* projected) {
+  const wave_float p_x = lobes->base_x + lobes->offset_x, p_y = lobes->base_y + lobes->offset_y;
+  const wave_float along = fma(p_x, o_x, p_y * o_y), m = o_z - along;
+  // v = B o_xy; t^2 = v^T (S + sigma_r^2 I) v
+  const wave_float w = fma(p_x, p_x, fma(p_y, p_y, 1.0f));
+  const wave_float v_x = fma(along, p_x, o_x), v_y = fma(along, p_y, o_y);
+  const wave_float l_1 = fma(lobes->spread_xx, v_x, lobes->spread_yx * v_y), l_2 = lobes->spread_yy * v_y;
+  const wave_float variance = w * fma(l_1, l_1, fma(l_2, l_2, roughness * roughness * fma(v_x, v_x, v_y * v_y)));
+  const wave_float hidden = hidden_area(m, sqrt(max(variance, 1e-16f)));
+  *projected = max(all ? m : -m, 0.0f);
+  return all ? max(m + hidden, 0.0f) : hidden;
+}
+
+// @param child of the leaf, in its tile.
+static inline void take_lobes(global const mica_patch_query* query, global const short* leaves, int leaf, int child, int i,
+                              int j, int room_i, int room_j, private leaf_results* results) {
+  lobe_leaf lobes = load_lobes(leaves + leaf * MICA_LOBE_LEAF, query->lobe.map.inverse_roughness);
+  const wave_float q_position = lobe_positions(&query->lobe.map, i, j);
+  const wave_int inside_map = wave_mask((WAVE_LANE & 3) < room_i) & wave_mask((WAVE_LANE >> 2) < room_j);
+  const wave_float nothing = 0.0f;
+  if ((results->dense >> child) & 1)
+    results->density += wave_select(nothing, lobe_densities(&query->lobe, &lobes, q_position), inside_map);
+  if (!((results->turned >> child) & 1)) return;
+  const float roughness = 1.0f / query->lobe.map.inverse_roughness;
+  lobes.spread_xx *= roughness, lobes.spread_yx *= roughness, lobes.spread_yy *= roughness;
+  const wave_float weight =
+      wave_select(nothing, gaussian_exp2(max((-EXP2_SCALE * EXP2_SCALE) * q_position, -126.0f)), inside_map);
+  const int all = results->all;
+  wave_float projected;
+  const wave_float view =
+      lobe_areas(&lobes, roughness, all, query->view_x, query->view_y, query->view_z, &projected);
+  const wave_float light =
+      lobe_areas(&lobes, roughness, all, query->light_x, query->light_y, query->light_z, &projected);
+  results->view = fma(weight, view, results->view);
+  results->light = fma(weight, light, results->light);
+  results->projected = fma(weight, projected, results->projected);
+}
+
+#define LEAF_QUERY mica_patch_query
+#define LEAF_PLACE(query) (&(query)->lobe.map)
+#define LEAF_NODE_STRIDE MICA_MIXTURE_NODE_STRIDE
+#define LEAF_DATA short
+#define LEAF_AT(leaf_i, leaf_j) ((block.index * 16 + tile) * 16 + leaf)
+#define LEAF_SURVIVORS(query, node, i, j, child_size, scratch) \
+  surviving_lobes(query, results, node, i, j, child_size, scratch)
+#define LEAF_TAKE(query, lobes, at, i, j, room_i, room_j, results, scratch) \
+  take_lobes(query, lobes, at, leaf, i, j, room_i, room_j, results)
+#include "walk_leaves.h"
+
+// o_z - p.o_xy of the mean slope.
+static inline float facing(slope_lobe lobe, float o_x, float o_y, float o_z) {
+  return o_z - fma(lobe.mean_x, o_x, lobe.mean_y * o_y);
+}
+
+// The area of one lobe that a direction sees.
+static inline float lobe_area(slope_lobe lobe, float o_x, float o_y, float o_z) {
+  const float m = facing(lobe, o_x, o_y, o_z);
+  const float variance = fma(lobe.xx * o_x, o_x, fma(2.0f * lobe.xy * o_x, o_y, lobe.yy * o_y * o_y));
+  const wave_float wave_m = m, wave_t = sqrt(max(variance, 1e-16f));
+  const wave_float hidden = hidden_area(wave_m, wave_t);
+#if MICA_WAVE_ITEMS
+  return max(m + hidden, 0.0f);
+#else
+  return max(m + hidden.s0, 0.0f);
+#endif
+}
+
+// D, I(view), I(light) and A_P(light) of every query, in the order of their slots. Global size: queries (vectors), or 16 a query
+// (items).
+kernel void beckmann_patches(global const mica_patch_query* restrict queries, int query_count, mica_map_grid grid,
+                             global const short* restrict lobes, global const short* restrict block_nodes,
+                             global const short* restrict tile_nodes, global const short* restrict pyramid,
+                             global float* restrict answers) {
+  WAVE_DECLARE_SCRATCH(scratch);
+  if (WAVE_ITEM_INDEX >= query_count) return;
+  global const mica_patch_query* query = queries + WAVE_ITEM_INDEX;
+  const wave_float nothing = 0.0f;
+  leaf_results results = {nothing, nothing, nothing, nothing, query->slopes.offset < 0, 0u, 0u};
+  float view = 0.0f, light = 0.0f, projected = 0.0f;
+  if (!results.all) {
+    slope_lobe lobe = footprint_slopes(&query->slopes, pyramid, scratch);
+    if (MICA_MASKING == 1) {
+      projected = max(facing(lobe, query->light_x, query->light_y, query->light_z), 0.0f);
+      lobe = with_roughness(lobe, query->lobe.map.inverse_roughness, scratch);
+      view = lobe_area(lobe, query->view_x, query->view_y, query->view_z);
+      light = lobe_area(lobe, query->light_x, query->light_y, query->light_z);
+    } else {
+      view = facing(lobe, query->view_x, query->view_y, query->view_z);
+      light = facing(lobe, query->light_x, query->light_y, query->light_z);
+      results.all = min(view, light) < LEAST_FACING;
+      if (results.all) view = light = 0.0f;
+      projected = light;
+    }
+  }
+  walk_leaves(query, grid, lobes, block_nodes, tile_nodes, &results, scratch);
+  global float* answer = answers + 4 * query->lobe.map.slot;
+  answer[0] = query->lobe.map.scale * wave_sum(results.density, scratch);
+  answer[1] = fma(query->weight, wave_sum(results.view, scratch), view);
+  answer[2] = fma(query->weight, wave_sum(results.light, scratch), light);
+  answer[3] = fma(query->weight, wave_sum(results.projected, scratch), projected);
+}

@@ -1,0 +1,44 @@
+// The keys of `ndf = "cavities"`, and what they refuse.
+#include "tests/job/job_text.h"
+
+namespace mica {
+namespace {
+
+using test::JobFolder;
+using test::least_job;
+using test::replaced;
+
+std::string with(const std::string& keys) {
+  return replaced(least_job, "surface = \"bumps\"\n",
+                  "surface = \"bumps\"\nndf = \"cavities\"\n" + keys + "\n");
+}
+
+TEST(CavitiesInAJob, HaveTheirKeys) {
+  const JobFolder folder;
+  const MaterialDescription plain = folder.load(with("")).scene.materials[0];
+  EXPECT_EQ(plain.ndf, "cavities");
+  EXPECT_EQ(plain.compensation, Compensation::diffuse);
+  EXPECT_EQ(plain.energy, LostEnergy::exact);
+  EXPECT_EQ(plain.elements, 1);
+  const MaterialDescription other =
+      folder.load(with("compensation = \"specular\"\nenergy = \"table\"\nspacing = 0.5")).scene.materials[0];
+  EXPECT_EQ(other.compensation, Compensation::specular);
+  EXPECT_EQ(other.energy, LostEnergy::table);
+  EXPECT_EQ(other.elements, 2);
+}
+
+TEST(CavitiesInAJob, RefuseWhatTheyDoNotTake) {
+  const JobFolder folder;
+  for (const std::string keys : {"spacing = 0.7", "energy = \"guess\"", "compensation = \"none\"",
+                                 "elements = 2", "masking = \"exact\"", "coat = { ior = 1.5 }"}) {
+    const std::vector<JobIssue> issues = folder.issues(with(keys));
+    ASSERT_EQ(issues.size(), 1u) << keys;
+    EXPECT_EQ(issues[0].line, 8) << keys;
+  }
+  EXPECT_EQ(folder.issues(replaced(least_job, "surface = \"bumps\"\n", "surface = \"bumps\"\nspacing = 1\n"))
+                .size(),
+            1u);
+}
+
+}  // namespace
+}  // namespace mica
