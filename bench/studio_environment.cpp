@@ -87,7 +87,8 @@ Color radiance(const Eigen::Vector3d& direction) {
 Color pixel(int column, int row) {
   Color sum = Color::Zero();
   for (int n = 0; n < samples * samples; ++n) {
-    const double x = column + (n % samples + 0.5) / samples, y = row + (n / samples + 0.5) / samples;
+    const int right = n % samples, down = n / samples;
+    const double x = column + (right + 0.5) / samples, y = row + (down + 0.5) / samples;
     const double longitude = 2 * pi * (x / width - 0.5), colatitude = pi * y / height;
     sum += radiance({std::sin(longitude) * std::sin(colatitude), std::cos(longitude) * std::sin(colatitude),
                      std::cos(colatitude)});
