@@ -203,7 +203,8 @@ Albedo BeckmannBrdf::albedo(const ViewQuery& from) {
   const double scale = 1 / (kAlbedoSamples * std::max(all[0].view_area, kLeastAreas));
   double scattered = 0, lost = scale * hidden_facing;
   for (std::size_t n = 0; n < seen.size(); ++n) {
-    const double g1 = all[n].light_projected / std::max(all[n].light_area, kLeastAreas);
+    // One filtered lobe's projected area may be negative where normals lean beyond the horizon.
+    const double g1 = std::max(all[n].light_projected / std::max(all[n].light_area, kLeastAreas), 0.0);
     scattered += scale * facing[n] * g1;
     lost += scale * facing[n] * std::max(1 - g1, 0.0);
   }

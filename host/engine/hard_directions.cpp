@@ -71,12 +71,12 @@ std::string fault_of(const BrdfValue& value, const Albedo& albedo, const BrdfSam
   return "";
 }
 
-/// [Yan14] masks by one roughness for the whole map, and is normalised for no patch: that is what the other
-/// maskings are for.
+/// Geometric masking knows one roughness for the whole map, filtered masking one lobe for a patch: only exact
+/// masking is normalised.
 void judge_energy(double most, Masking masking, HardResult* result) {
   constexpr double rounding = 0.02;
   if (most <= 1 + rounding || result->outcome == Outcome::broken) return;
-  const bool known = masking == Masking::geometric;
+  const bool known = masking != Masking::exact;
   result->outcome = known ? Outcome::limitation : Outcome::broken;
   result->worst = std::max(result->worst, most);
   result->reason = fmt::format("scatters up to {:.2f} times what it receives", result->worst);
