@@ -387,7 +387,8 @@ TEST_P(ShippedJob, Loads) {
   EXPECT_FALSE(job.scene.lights.empty());
 }
 
-INSTANTIATE_TEST_SUITE_P(Data, ShippedJob, testing::Values("shell.toml", "paint.toml", "first.toml"));
+INSTANTIATE_TEST_SUITE_P(Data, ShippedJob,
+                         testing::Values("shell.toml", "paint.toml", "first.toml", "studio.toml"));
 
 }  // namespace
 }  // namespace mica::test
