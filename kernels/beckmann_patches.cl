@@ -1,6 +1,7 @@
 // What the BRDF of a patch is made of, [Che18] Eq. 7, on a mixture of Beckmann lobes: the density D_P of its half vector,
 // as beckmanns.cl has it, the areas I(o), I(i) that view and light see of its microsurface, [Che18] Eqs. 11-13, and the
-// projected area A_P(i) of its mean normals, Eq. 17.
+// projected area of its mean normal: Eq. 17, but for its clamps, with which a patch of slopes without a mean would not have
+// the cosine's.
 //
 // I is linear in the mean slope, o_z - p.o_xy, but for the lobes that lie close to edge-on or face away. So the mean comes
 // from the pyramid of slopes, and only those lobes are visited besides; all of them where the footprint is too small for the
@@ -63,8 +64,8 @@ static inline uint surviving_lobes(global const mica_patch_query* query, private
   return results->dense | results->turned;
 }
 
-// Areas of lobes that a direction sees, and projected areas of their mean normals; both less the part that is linear in the
-// mean unless all lobes are visited.
+// Areas of lobes that a direction sees, less the part that is linear in the mean unless all lobes are visited; and projected
+// areas of their mean normals, negative where those turn away.
 static inline wave_float lobe_areas(const private lobe_leaf* lobes, float roughness, int all, float o_x, float o_y,
                                     float o_z, private wave_float* projected) {
   const wave_float p_x = lobes->base_x + lobes->offset_x, p_y = lobes->base_y + lobes->offset_y;
@@ -75,7 +76,7 @@ static inline wave_float lobe_areas(const private lobe_leaf* lobes, float roughn
   const wave_float l_1 = fma(lobes->spread_xx, v_x, lobes->spread_yx * v_y), l_2 = lobes->spread_yy * v_y;
   const wave_float variance = w * fma(l_1, l_1, fma(l_2, l_2, roughness * roughness * fma(v_x, v_x, v_y * v_y)));
   const wave_float hidden = hidden_area(m, sqrt(max(variance, 1e-16f)));
-  *projected = max(all ? m : -m, 0.0f);
+  *projected = m;
   return all ? max(m + hidden, 0.0f) : hidden;
 }
 
@@ -101,7 +102,7 @@ static inline void take_lobes(global const mica_patch_query* query, global const
       lobe_areas(&lobes, roughness, all, query->light_x, query->light_y, query->light_z, &projected);
   results->view = fma(weight, view, results->view);
   results->light = fma(weight, light, results->light);
-  results->projected = fma(weight, projected, results->projected);
+  if (all) results->projected = fma(weight, projected, results->projected);
 }
 
 #define LEAF_QUERY mica_patch_query
@@ -133,7 +134,7 @@ static inline float lobe_area(slope_lobe lobe, float o_x, float o_y, float o_z) 
 #endif
 }
 
-// D, I(view), I(light) and A_P(light) of every query, in the order of their slots. Global size: queries (vectors), or 16 a query
+// D, I(view), I(light) and the light's projected area of every query, in the order of their slots. Global size: queries (vectors), or 16 a query
 // (items).
 kernel void beckmann_patches(global const mica_patch_query* restrict queries, int query_count, mica_map_grid grid,
                              global const short* restrict lobes, global const short* restrict block_nodes,

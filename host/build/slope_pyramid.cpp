@@ -31,10 +31,11 @@ struct Taps {
   std::vector<double> weights;  // sum to one
 };
 
-Taps taps_of(int cell, int size, int next_size) {
+/// @param kernel variance of this level's cells, in its spacings^2.
+Taps taps_of(int cell, int size, int next_size, double kernel) {
   const double ratio = static_cast<double>(size) / next_size;
   // Kernels grow with their spacing: theirs and this filter's variances add up.
-  const double variance = kPositionKernelVariance * (ratio * ratio - 1), center = (cell + 0.5) * ratio - 0.5;
+  const double variance = kCellVariance * ratio * ratio - kernel, center = (cell + 0.5) * ratio - 0.5;
   Taps taps;
   if (size == next_size) return {cell, {1.0}};
   const int reach = static_cast<int>(std::ceil(kReach * std::sqrt(variance)));
@@ -54,14 +55,14 @@ int wrap(int index, int period) {
   return remainder < 0 ? remainder + period : remainder;
 }
 
-Cells next_level(int width, int height, const RowOf& row_of) {
+Cells next_level(int width, int height, double kernel, const RowOf& row_of) {
   Cells next{std::max(width / 2, 1), std::max(height / 2, 1), {}};
   next.moments.assign(static_cast<std::size_t>(next.width) * next.height, SlopeMoments::Zero());
   std::vector<Taps> columns(next.width);
-  for (int i = 0; i < next.width; ++i) columns[i] = taps_of(i, width, next.width);
+  for (int i = 0; i < next.width; ++i) columns[i] = taps_of(i, width, next.width, kernel);
   tbb::parallel_for(0, next.height, [&](int j) {
     SlopeMoments* out = next.moments.data() + static_cast<std::size_t>(j) * next.width;
-    const Taps rows = taps_of(j, height, next.height);
+    const Taps rows = taps_of(j, height, next.height, kernel);
     for (std::size_t m = 0; m < rows.weights.size(); ++m) {
       const std::vector<SlopeMoments> row = row_of(wrap(rows.first + static_cast<int>(m), height));
       for (int i = 0; i < next.width; ++i) {
@@ -153,10 +154,10 @@ SlopePyramid build_slope_pyramid(const LobeStructure& lobes, bool with_finest) {
   };
   if (with_finest || (width == 1 && height == 1)) append(width, height, finest, &pyramid);
   if (width == 1 && height == 1) return pyramid;
-  Cells cells = next_level(width, height, finest);
+  Cells cells = next_level(width, height, kPositionKernelVariance, finest);
   append(cells.width, cells.height, rows_of(cells), &pyramid);
   while (cells.width > 1 || cells.height > 1) {
-    cells = next_level(cells.width, cells.height, rows_of(cells));
+    cells = next_level(cells.width, cells.height, kCellVariance, rows_of(cells));
     append(cells.width, cells.height, rows_of(cells), &pyramid);
   }
   return pyramid;

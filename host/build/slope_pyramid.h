@@ -9,8 +9,12 @@
 
 namespace mica {
 
-/// One level of a pyramid of slopes: cells of which each has the moments under a Gaussian of the mixture's
-/// position kernel, as wide as its own spacing asks for.
+/// Variance of the Gaussian that a cell of the pyramid stands for, in its spacings^2, but for the finest
+/// level, that of the lobes: wider than their position kernel, so that 5e-5 is left of waves as short as a
+/// spacing.
+constexpr double kCellVariance = 0.5;
+
+/// One level of a pyramid of slopes.
 struct SlopeLevel {
   int width = 0, height = 0;             ///< cells a period
   std::size_t offset = 0;                ///< of its first number

@@ -177,7 +177,7 @@ std::vector<BrdfSample> BeckmannBrdf::sample(const std::vector<SampleQuery>& que
 }
 
 /// Drawn normals h have the density D(h) (h.g), so that the mean of <o, h> / (h.g) is I(o), and that times
-/// A_P(i) / I(i), over I(o), what is scattered. With exact areas the first mean is known, and what is lost is
+/// A(i) / I(i), over I(o), what is scattered. With exact areas the first mean is known, and what is lost is
 /// summed instead: it cannot be negative.
 Albedo BeckmannBrdf::albedo(const ViewQuery& from) {
   std::vector<Eigen::Vector3d> normals(kAlbedoSamples);

@@ -21,8 +21,9 @@ class BeckmannBrdf : public PatchBrdf {
   BeckmannBrdf(Device& device, const Surface& surface, const PatchBrdfSettings& settings);
 
   std::vector<BrdfValue> evaluate(const std::vector<BrdfQuery>& queries) override;
-  /// Light counts as the patch receives it, by its projected area A_P(i) and not by i.g: the two are the same
-  /// where the mean normal is g, and only with the first no patch scatters more than it gets.
+  /// Light counts as the patch receives it, by the projected area A(i) of its mean normal and not by i.g: the
+  /// two are the same where the mean normal is g, and only with the first no patch scatters more than it
+  /// gets.
   std::vector<Albedo> energy(const std::vector<ViewQuery>& queries) override;
   std::vector<BrdfSample> sample(const std::vector<SampleQuery>& queries) override;
 
@@ -34,7 +35,7 @@ class BeckmannBrdf : public PatchBrdf {
   }
 
  private:
-  /// D of a query's half vector, I of its directions, and the projected area A_P(i) of mean normals, Eq. 17.
+  /// D of a query's half vector, I of its directions, and the projected area A(i) of the mean normal.
   struct Parts {
     double density = 0, view_area = 0, light_area = 0, light_projected = 0;
   };

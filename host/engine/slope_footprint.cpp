@@ -32,8 +32,11 @@ device_types::mica_slope_footprint to_slope_footprint(const LobeWeights& weights
   device_types::mica_slope_footprint result{};
   // The surface that the weighted lobes see, which are blurred by their kernel.
   const double smallest = weights.sigma.cwiseAbs2().minCoeff() + k;
+  const auto kernel = [&](const SlopeLevel& level) {
+    return level.width == grid.width && level.height == grid.height ? k : kCellVariance;
+  };
   const auto fits = [&](const SlopeLevel& level) {
-    return (k + least_variance) * spacing(level, grid).square().maxCoeff() <= smallest;
+    return (kernel(level) + least_variance) * spacing(level, grid).square().maxCoeff() <= smallest;
   };
   auto level = std::find_if(levels.rbegin(), levels.rend(), fits);
   if (level == levels.rend()) {
@@ -46,7 +49,7 @@ device_types::mica_slope_footprint to_slope_footprint(const LobeWeights& weights
   }
   const Eigen::Array2d h = spacing(*level, grid);
   Eigen::Matrix2d covariance = weights.covariance();
-  covariance.diagonal().array() += k * (1 - h.square());
+  covariance.diagonal().array() += k - kernel(*level) * h.square();
   covariance.array() /= (h.matrix() * h.matrix().transpose()).array();
   const double shear = covariance(0, 1) / covariance(1, 1);
   result.offset = static_cast<std::int32_t>(level->offset);

