@@ -197,10 +197,6 @@ TEST(GatherLight, CavitiesCannotBeToldFromTheFurnace) {
   expect_furnace("ndf = \"cavities\"\n", 0.99, 1.005);
 }
 
-TEST(GatherLight, OneBounceLosesLight) {
-  expect_furnace("ndf = \"beckmanns\"\n", 0.8, 0.995);
-}
-
 TEST(GatherLight, IsTheSameForAnyBatchAndThreadCount) {
   const std::string material =
       "surface = \"noise\"\nroughness = 0.02\nrepeat = [9, 9]\ndiffuse = [0.1, 0.1, 0.1]\n";
