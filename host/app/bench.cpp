@@ -44,7 +44,7 @@ void add_bench(CLI::App& app, Command* chosen) {
       "quick takes less than a minute, standard less than ten, on two idle cores. Compare ratios within a "
       "run,\n"
       "not speeds of two runs. docs/benchmark.md says what is measured and how.");
-  command->add_option("suite", options->suite, "quick or standard")
+  command->add_option("suite", options->suite, "tiny, quick or standard")
       ->check(CLI::IsMember(bench::suite_names()))
       ->capture_default_str();
   command->add_option("--json", options->json, "Writes every number as JSON")->type_name("FILE");

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "host/app/interrupt.h"
+#include "host/engine/hard_directions.h"
 
 namespace mica::app {
 namespace {
@@ -14,7 +15,7 @@ std::string ulp_text(double ulp) {
 }
 
 void print(const HardResult& result) {
-  fmt::print("{:<32} {:<10} {:<13} {:>9} {:>8} {:>8}  {}\n", result.hard_case, result.evaluator,
+  fmt::print("{:<36} {:<20} {:<13} {:>9} {:>8} {:>8}  {}\n", result.hard_case, result.evaluator,
              name_of(result.outcome), result.evaluated, result.compared,
              result.compared ? fmt::format("{:.3f}", result.worst) : "-", result.reason);
 }
@@ -91,7 +92,11 @@ std::vector<HardResult> print_hard_cases(Device* device, std::uint64_t evaluatio
     for (const HardResult& result : run_hard_case(hard_case, *device, {})) results.push_back(result);
   }
   if (evaluations > 0) ask_more(device, evaluations, &results);
-  fmt::print("\n{:<32} {:<10} {:<13} {:>9} {:>8} {:>8}\n", "hard case", "evaluator", "outcome", "answers",
+  constexpr int queries = 100;
+  for (const HardDirections& directions : hard_directions())
+    for (const HardResult& result : run_hard_directions(directions, *device, queries))
+      results.push_back(result);
+  fmt::print("\n{:<36} {:<20} {:<13} {:>9} {:>8} {:>8}\n", "hard case", "evaluator", "outcome", "answers",
              "compared", "error");
   for (const HardResult& result : results) print(result);
   fmt::print("{} answers were looked at: finite, not negative, and not above what can be.\n\n",

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "host/base/error.h"
 #include "host/engine/make_evaluator.h"
 #include "host/engine/mixture_evaluator.h"
 #include "host/engine/triangle_evaluator.h"
@@ -33,25 +34,40 @@ std::vector<Contender> contenders(const std::vector<int>& elements) {
   return all;
 }
 
-std::unique_ptr<Evaluator> make(const Contender& contender, Device& device, const Surface& surface) {
-  return make_evaluator(contender.evaluator, device, surface, contender.elements);
-}
+namespace {
 
-Counter make_counter(const Contender& contender, Device& device, const Surface& surface) {
-  Counter counter;
-  if (contender.evaluator == "triangles") {
+void add_counter(Device& device, const Surface& surface, Prepared* prepared) {
+  if (prepared->contender.evaluator == "triangles") {
     TriangleSettings settings;
     settings.count_flops = true;
-    counter.evaluator = std::make_unique<TriangleEvaluator>(device, surface, settings);
-    counter.flops_a_count = 1;
-  } else if (contender.evaluator == "gaussians") {
+    prepared->counter = std::make_unique<TriangleEvaluator>(device, surface, settings);
+    prepared->flops_a_count = 1;
+  } else if (prepared->contender.evaluator == "gaussians") {
     MixtureSettings settings;
-    settings.elements = contender.elements;
+    settings.elements = prepared->contender.elements;
     settings.count_elements = true;
-    counter.evaluator = std::make_unique<GaussianEvaluator>(device, surface, settings);
-    counter.flops_a_count = kFlopsAnElement;
+    prepared->counter = std::make_unique<GaussianEvaluator>(device, surface, settings);
+    prepared->flops_a_count = kFlopsAnElement;
   }
-  return counter;
+}
+
+}  // namespace
+
+std::vector<Prepared> prepare(const std::vector<Contender>& contenders, Device& device,
+                              const Surface& surface) {
+  std::vector<Prepared> all;
+  for (const Contender& contender : contenders) {
+    Prepared prepared;
+    prepared.contender = contender;
+    try {
+      prepared.evaluator = make_evaluator(contender.evaluator, device, surface, contender.elements);
+      add_counter(device, surface, &prepared);
+    } catch (const UsageError& error) {
+      prepared.refused = error.what();
+    }
+    all.push_back(std::move(prepared));
+  }
+  return all;
 }
 
 }  // namespace mica::bench

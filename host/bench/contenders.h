@@ -21,14 +21,19 @@ struct Contender {
 /// `elements`.
 std::vector<Contender> contenders(const std::vector<int>& elements);
 
-/// Throws what make_evaluator throws: a contender may not take the surface.
-std::unique_ptr<Evaluator> make(const Contender& contender, Device& device, const Surface& surface);
-
-/// The contender with a kernel that answers how much it computes in place of densities.
-struct Counter {
-  std::unique_ptr<Evaluator> evaluator;  ///< null for a contender that cannot count
-  double flops_a_count = 0;              ///< a multiply-add is two
+/// A contender on a surface, ready to answer.
+struct Prepared {
+  Contender contender;
+  std::unique_ptr<Evaluator> evaluator;  ///< null when it does not take the surface
+  std::string refused;                   ///< why
+  /// The same with a kernel that answers how much it computes in place of densities; null when it cannot
+  /// count.
+  std::unique_ptr<Evaluator> counter;
+  double flops_a_count = 0;  ///< a multiply-add is two
 };
-Counter make_counter(const Contender& contender, Device& device, const Surface& surface);
+
+/// Builds every contender on the surface, which has to outlive them. Throws DeviceError.
+std::vector<Prepared> prepare(const std::vector<Contender>& contenders, Device& device,
+                              const Surface& surface);
 
 }  // namespace mica::bench

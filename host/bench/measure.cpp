@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "host/base/error.h"
 #include "host/base/stopwatch.h"
 #include "host/bench/coherent.h"
 
@@ -34,14 +33,13 @@ std::vector<Query> affordable(Evaluator* evaluator, const std::vector<Query>& qu
   return sample;
 }
 
-double share_of_peak(const Contender& contender, Device& device, const Surface& surface, double fma_peak,
-                     const std::vector<Query>& queries, double rate) {
-  const Counter counter = make_counter(contender, device, surface);
-  if (!counter.evaluator) return -1;
-  const std::vector<float> counts = counter.evaluator->evaluate(queries);
+double share_of_peak(const Prepared& prepared, double fma_peak, const std::vector<Query>& queries,
+                     double rate) {
+  if (!prepared.counter) return -1;
+  const std::vector<float> counts = prepared.counter->evaluate(queries);
   const double counts_a_query =
       std::accumulate(counts.begin(), counts.end(), 0.0) / static_cast<double>(counts.size());
-  return rate * counts_a_query * counter.flops_a_count / fma_peak;
+  return rate * counts_a_query * prepared.flops_a_count / fma_peak;
 }
 
 /// The least that has to be moved: queries in, densities out, and once each part of the structure that lies
@@ -88,24 +86,22 @@ Errors errors_of(const std::vector<float>& densities, const std::vector<double>&
   return result;
 }
 
-Measurement measure(const Contender& contender, Device& device, const Surface& surface,
-                    const Machine& machine, double sigma_texels, const std::vector<Query>& queries,
-                    const std::vector<Query>& few, const std::vector<double>& references,
-                    const Effort& effort) {
+Measurement measure(const Prepared& prepared, const Surface& surface, const Machine& machine,
+                    double sigma_texels, const std::vector<Query>& queries, const std::vector<Query>& few,
+                    const std::vector<double>& references, const Effort& effort) {
   Measurement m;
-  m.evaluator = contender.evaluator, m.label = contender.label, m.knob = contender.knob;
-  try {
-    const std::unique_ptr<Evaluator> evaluator = make(contender, device, surface);
-    m.build_seconds = evaluator->build_seconds();
-    m.device_bytes = evaluator->device_bytes();
-    std::vector<Query> batch;
-    m.speed = measure_speed(evaluator.get(), queries, effort, &batch);
-    m.errors = errors_of(evaluator->evaluate(few), references);
-    m.share_of_peak = share_of_peak(contender, device, surface, machine.fma_peak, batch, m.speed.median);
-    m.share_of_bandwidth = share_of_bandwidth(m, surface, sigma_texels, machine.bandwidth);
-  } catch (const UsageError& error) {
-    m.refused = error.what();
-  }
+  m.evaluator = prepared.contender.evaluator, m.label = prepared.contender.label,
+  m.knob = prepared.contender.knob;
+  m.refused = prepared.refused;
+  if (!prepared.evaluator) return m;
+  Evaluator& evaluator = *prepared.evaluator;
+  std::vector<Query> batch;
+  m.speed = measure_speed(&evaluator, queries, effort, &batch);
+  m.errors = errors_of(evaluator.evaluate(few), references);
+  m.build_seconds = evaluator.build_seconds();  // now: some build what a footprint needs when it comes
+  m.device_bytes = evaluator.device_bytes();
+  m.share_of_peak = share_of_peak(prepared, machine.fma_peak, batch, m.speed.median);
+  m.share_of_bandwidth = share_of_bandwidth(m, surface, sigma_texels, machine.bandwidth);
   return m;
 }
 

@@ -30,10 +30,9 @@ struct Machine {
 
 /// Everything about one contender on coherent queries.
 /// @param few queries that `references` answers.
-Measurement measure(const Contender& contender, Device& device, const Surface& surface,
-                    const Machine& machine, double sigma_texels, const std::vector<Query>& queries,
-                    const std::vector<Query>& few, const std::vector<double>& references,
-                    const Effort& effort);
+Measurement measure(const Prepared& prepared, const Surface& surface, const Machine& machine,
+                    double sigma_texels, const std::vector<Query>& queries, const std::vector<Query>& few,
+                    const std::vector<double>& references, const Effort& effort);
 
 /// Throws to stop; called between measurements with what comes next.
 using Progress = std::function<void(const std::string& what)>;

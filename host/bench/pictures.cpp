@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "host/base/error.h"
 #include "host/base/stopwatch.h"
 #include "host/bench/image_difference.h"
 #include "host/bench/point_samples.h"
@@ -20,11 +19,13 @@ constexpr int kResolution = 512, kSubpixels = 2, kRepeats = 3;
 constexpr double kOracleTolerance = 1e-5;
 constexpr double kMostSampleSeconds = 2;  // that a picture by brute force may take
 
-/// The middle of data/jobs/shell.toml, closer.
-SceneDescription shell_scene() {
+/// A part of data/jobs/shell.toml, at the same size of pixels whatever their number.
+SceneDescription shell_scene(int height) {
+  constexpr double degrees_a_pixel = 0.07;
   SceneDescription scene;
   scene.camera.position = {0, -3.2, 1.4}, scene.camera.look_at = {0.05, 0, 0.42},
-  scene.camera.fov_degrees = 9;
+
+  scene.camera.fov_degrees = degrees_a_pixel * height;
   MaterialDescription material;
   material.name = "shell", material.surface = "nacre", material.repeat = {12, 12}, material.roughness = 0.01;
   material.specular = ConductorFresnel{};
@@ -56,7 +57,7 @@ Crop trace_crop(int width) {
   SpectrumSurface nacre;
   nacre.resolution = kResolution, nacre.rms_slope = 0.3;
   const int height = width * 3 / 4;
-  const Scene scene(shell_scene(), width, height, kSubpixels);
+  const Scene scene(shell_scene(height), width, height, kSubpixels);
   Crop crop{make_surface({"nacre", nacre, Interpolation::bilinear}, nullptr),
             width,
             height,
@@ -113,17 +114,17 @@ class BruteForce {
   double seconds_a_sample_ = 0, variance_ = 0;
 };
 
-Picture render_with(const Contender& contender, Device& device, const Crop& crop) {
-  const std::unique_ptr<Evaluator> evaluator = make(contender, device, crop.surface);
-  std::vector<float> densities = evaluator->evaluate(crop.queries);  // warm-up
+Picture render_with(const Prepared& prepared, const Crop& crop) {
+  const std::vector<float> densities = prepared.evaluator->evaluate(crop.queries);  // warm-up
   std::vector<double> seconds;
   for (int repeat = 0; repeat < kRepeats; ++repeat) {
     const Stopwatch watch;
-    evaluator->evaluate(crop.queries);
+    prepared.evaluator->evaluate(crop.queries);
     seconds.push_back(watch.seconds());
   }
   std::sort(seconds.begin(), seconds.end());
-  return {contender.evaluator, contender.label, crop.image_of(densities), seconds[seconds.size() / 2]};
+  return {prepared.contender.evaluator, prepared.contender.label, crop.image_of(densities),
+          seconds[seconds.size() / 2]};
 }
 
 }  // namespace
@@ -145,14 +146,11 @@ void render_pictures(int width, const std::vector<int>& elements, Device& device
 
   progress("picture: brute force");
   const BruteForce brute_force(crop, results->reference_picture);
-  for (const Contender& contender : contenders(elements)) {
-    progress("picture: " + contender.label);
-    try {
+  for (const Prepared& prepared : prepare(contenders(elements), device, crop.surface)) {
+    progress("picture: " + prepared.contender.label);
+    if (prepared.evaluator)
       results->pictures.push_back(
-          brute_force.beside(judged(render_with(contender, device, crop), results->reference_picture)));
-    } catch (const UsageError&) {
-      continue;  // does not take this surface
-    }
+          brute_force.beside(judged(render_with(prepared, crop), results->reference_picture)));
   }
 }
 

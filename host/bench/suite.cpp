@@ -51,6 +51,8 @@ struct Suite {
 };
 
 Suite find_suite(const std::string& name) {
+  if (name == "tiny")
+    return {{kSpectrum, kFlakes}, 128, {64, 128}, {2, 8}, {0.02}, {1}, {3, 0.002}, 0.05, 16, 16};
   if (name == "quick")
     return {
         {kSpectrum, kFlakes}, 1024, {512, 1024, 2048}, {2, 8, 32}, {0.005}, {1, 2}, {10, 0.01}, 0.25, 48, 72};
@@ -65,7 +67,7 @@ Suite find_suite(const std::string& name) {
             1,
             64,
             128};
-  throw UsageError(fmt::format("there is no suite \"{}\"; expected quick or standard", name));
+  throw UsageError(fmt::format("there is no suite \"{}\"; expected tiny, quick or standard", name));
 }
 
 /// The oracle's cost grows with the footprint's area.
@@ -78,21 +80,35 @@ std::vector<Query> few_of(const std::vector<Query>& queries, double sigma_texels
   return thinned(queries, static_cast<std::size_t>(static_cast<double>(queries.size()) / count) | 1);
 }
 
-Cell measure_cell(const Suite& suite, const NamedSurface& named, const Surface& surface,
-                  const reference::Oracle& oracle, double sigma_texels, double roughness,
-                  const Machine& machine, Device& device, const Progress& progress) {
-  const std::vector<Query> queries = coherent_queries(surface, sigma_texels, roughness);
-  const std::vector<Query> few = few_of(queries, sigma_texels, suite.reference_share);
-  const std::string place = fmt::format("{} of {} texels, footprint {}, roughness {}", named.name,
-                                        surface.width(), sigma_texels, roughness);
+/// A surface with everything that answers on it.
+struct Bench {
+  std::string name;
+  Surface surface;
+  reference::Oracle oracle;
+  std::vector<Prepared> contenders;
+
+  Bench(const NamedSurface& named, int resolution, const std::vector<int>& elements, Device& device)
+      : name(named.name),
+        surface(make_surface(named.describe(resolution), nullptr)),
+        oracle(surface, kOracleTolerance),
+        contenders(prepare(bench::contenders(elements), device, surface)) {}
+};
+
+Cell measure_cell(const Suite& suite, const Bench& bench, double reference_share, double sigma_texels,
+                  double roughness, const Machine& machine, const Progress& progress) {
+  const std::vector<Query> queries = coherent_queries(bench.surface, sigma_texels, roughness);
+  const std::vector<Query> few = few_of(queries, sigma_texels, reference_share);
+  const std::string place = fmt::format("{} of {} texels, footprint {}, roughness {}", bench.name,
+                                        bench.surface.width(), sigma_texels, roughness);
   progress(place + ": reference");
   std::vector<double> references;
-  for (const reference::OracleResult& result : oracle.evaluate(few)) references.push_back(result.density);
-  Cell cell{named.name, surface.width(), sigma_texels, roughness, few.size(), {}};
-  for (const Contender& contender : contenders(suite.elements)) {
-    progress(place + ": " + contender.label);
+  for (const reference::OracleResult& result : bench.oracle.evaluate(few))
+    references.push_back(result.density);
+  Cell cell{bench.name, bench.surface.width(), sigma_texels, roughness, few.size(), {}};
+  for (const Prepared& prepared : bench.contenders) {
+    progress(place + ": " + prepared.contender.label);
     cell.measurements.push_back(
-        measure(contender, device, surface, machine, sigma_texels, queries, few, references, suite.effort));
+        measure(prepared, bench.surface, machine, sigma_texels, queries, few, references, suite.effort));
   }
   return cell;
 }
@@ -100,30 +116,25 @@ Cell measure_cell(const Suite& suite, const NamedSurface& named, const Surface& 
 void measure_cells(const Suite& suite, const Machine& machine, Device& device, const Progress& progress,
                    Results* results) {
   for (const NamedSurface& named : suite.surfaces) {
-    progress(fmt::format("making {} of {} texels", named.name, suite.resolution));
-    const Surface surface = make_surface(named.describe(suite.resolution), nullptr);
-    const reference::Oracle oracle(surface, kOracleTolerance);
+    progress(fmt::format("building {} of {} texels", named.name, suite.resolution));
+    const Bench bench(named, suite.resolution, suite.elements, device);
     for (const double sigma_texels : suite.sigmas_texels)
       for (const double roughness : suite.roughnesses)
         results->cells.push_back(
-            measure_cell(suite, named, surface, oracle, sigma_texels, roughness, machine, device, progress));
+            measure_cell(suite, bench, suite.reference_share, sigma_texels, roughness, machine, progress));
     results->thumbnails.push_back(
-        thumbnails(named.name, surface, suite.elements, suite.thumbnail_side, device, progress));
+        thumbnails(named.name, bench.surface, bench.contenders, suite.thumbnail_side, progress));
   }
 }
 
 void measure_map_sizes(const Suite& suite, const Machine& machine, Device& device, const Progress& progress,
                        Results* results) {
   constexpr double sigma_texels = 8, roughness = 0.005;
-  Suite lean = suite;
-  lean.reference_share = suite.reference_share / 8;
-  lean.elements = {1};
   for (const int size : suite.map_sizes) {
-    progress(fmt::format("making spectrum of {} texels", size));
-    const Surface surface = make_surface(kSpectrum.describe(size), nullptr);
-    const reference::Oracle oracle(surface, kOracleTolerance);
+    progress(fmt::format("building spectrum of {} texels", size));
+    const Bench bench(kSpectrum, size, {1}, device);
     results->map_sizes.push_back(
-        measure_cell(lean, kSpectrum, surface, oracle, sigma_texels, roughness, machine, device, progress));
+        measure_cell(suite, bench, suite.reference_share / 8, sigma_texels, roughness, machine, progress));
   }
 }
 
@@ -134,7 +145,7 @@ std::string utc_now() {
 }  // namespace
 
 const std::vector<std::string>& suite_names() {
-  static const std::vector<std::string> names = {"quick", "standard"};
+  static const std::vector<std::string> names = {"tiny", "quick", "standard"};
   return names;
 }
 

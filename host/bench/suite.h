@@ -8,7 +8,8 @@
 
 namespace mica::bench {
 
-/// Names of the suites: "quick" takes less than a minute, "standard" less than ten, on two idle cores.
+/// Names of the suites: "tiny" takes seconds and shows that all of it works; "quick" takes less than a
+/// minute, "standard" less than ten, on two idle cores.
 const std::vector<std::string>& suite_names();
 
 /// Runs a suite on the device. Throws UsageError for a name that there is not, DeviceError, and what

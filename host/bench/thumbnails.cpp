@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "host/base/error.h"
 #include "host/engine/accuracy.h"
 #include "host/reference/oracle.h"
 
@@ -42,11 +41,11 @@ std::vector<Query> window_queries(const Surface& surface, int side, double* radi
 
 }  // namespace
 
-ThumbnailRow thumbnails(const std::string& name, const Surface& surface, const std::vector<int>& elements,
-                        int side, Device& device, const Progress& progress) {
+ThumbnailRow thumbnails(const std::string& name, const Surface& surface,
+                        const std::vector<Prepared>& contenders, int side, const Progress& progress) {
   ThumbnailRow row{name, kSigmaTexels, kRoughness, 0, {}};
   const std::vector<Query> queries = window_queries(surface, side, &row.window);
-  progress(fmt::format("P-NDF of {}: reference", name));
+  progress(fmt::format("P-NDF of {}", name));
   std::vector<double> references;
   Thumbnail reference{"reference", "reference", side, {}, 0};
   for (const reference::OracleResult& result :
@@ -55,16 +54,12 @@ ThumbnailRow thumbnails(const std::string& name, const Surface& surface, const s
     reference.densities.push_back(static_cast<float>(result.density));
   }
   row.thumbnails.push_back(std::move(reference));
-  for (const Contender& contender : contenders(elements)) {
-    progress(fmt::format("P-NDF of {}: {}", name, contender.label));
-    try {
-      Thumbnail thumbnail{contender.evaluator, contender.label, side, {}, 0};
-      thumbnail.densities = make(contender, device, surface)->evaluate(queries);
-      thumbnail.relative_l2 = errors_of(thumbnail.densities, references).relative_l2;
-      row.thumbnails.push_back(std::move(thumbnail));
-    } catch (const UsageError&) {
-      continue;  // does not take this surface; the table of measurements says why
-    }
+  for (const Prepared& prepared : contenders) {
+    if (!prepared.evaluator) continue;  // the table of measurements says why
+    Thumbnail thumbnail{prepared.contender.evaluator, prepared.contender.label, side, {}, 0};
+    thumbnail.densities = prepared.evaluator->evaluate(queries);
+    thumbnail.relative_l2 = errors_of(thumbnail.densities, references).relative_l2;
+    row.thumbnails.push_back(std::move(thumbnail));
   }
   return row;
 }

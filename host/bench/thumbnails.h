@@ -9,7 +9,7 @@
 namespace mica::bench {
 
 /// One footprint's P-NDF as the oracle and as every contender sees it.
-ThumbnailRow thumbnails(const std::string& name, const Surface& surface, const std::vector<int>& elements,
-                        int side, Device& device, const Progress& progress);
+ThumbnailRow thumbnails(const std::string& name, const Surface& surface,
+                        const std::vector<Prepared>& contenders, int side, const Progress& progress);
 
 }  // namespace mica::bench

@@ -9,7 +9,7 @@
 namespace mica {
 namespace {
 
-constexpr double kLeft = 62, kRight = 16, kTop = 28, kBottom = 42;
+constexpr double kLeft = 62, kRight = 24, kTop = 28, kBottom = 42;
 const char* const kGrid = "#e6e6e6";
 const char* const kAxis = "#9a9a9a";
 
@@ -37,10 +37,10 @@ class LogAxis {
 };
 
 std::string tick_text(double value) {
-  if (value >= 1e9) return fmt::format("{:g} G", value * 1e-9);
-  if (value >= 1e6) return fmt::format("{:g} M", value * 1e-6);
-  if (value >= 1e4) return fmt::format("{:g} k", value * 1e-3);
-  if (value >= 1e-3) return fmt::format("{:g}", value);
+  if (value >= 1e9) return fmt::format("{:.3g} G", value * 1e-9);
+  if (value >= 1e6) return fmt::format("{:.3g} M", value * 1e-6);
+  if (value >= 1e4) return fmt::format("{:.3g} k", value * 1e-3);
+  if (value >= 1e-3) return fmt::format("{:.4g}", value);
   return fmt::format("{:.0e}", value);
 }
 

@@ -31,7 +31,7 @@ struct Chart {
   std::string title, x_label, y_label;
   std::vector<ChartSeries> series;
   bool pareto = false;  ///< draws the front of points than which none is both further right and lower
-  double width = 380, height = 260;
+  double width = 358, height = 250;
 };
 std::string draw(const Chart& chart);
 

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "host/engine/hard_directions.h"
 #include "host/engine/judge.h"
 #include "host/engine/make_evaluator.h"
 #include "host/engine/run_hard_case.h"
@@ -53,6 +54,22 @@ INSTANTIATE_TEST_SUITE_P(All, HardCases, testing::Range(std::size_t{0}, hard_cas
                              if (!std::isalnum(static_cast<unsigned char>(letter))) letter = '_';
                            return name;
                          });
+
+/// Grazing and backfacing directions, on every BRDF.
+TEST(HardDirections, AreAnsweredByEveryBrdf) {
+  for (const HardDirections& directions : hard_directions()) {
+    int answered = 0;
+    for (const HardResult& result : run_hard_directions(directions, device(), 60)) {
+      std::printf("%-36s %-20s %-12s %llu looked at  %s\n", result.hard_case.c_str(),
+                  result.evaluator.c_str(), name_of(result.outcome),
+                  static_cast<unsigned long long>(result.evaluated), result.reason.c_str());
+      EXPECT_NE(result.outcome, Outcome::broken) << result.hard_case << ": " << result.reason;
+      EXPECT_EQ(result.evaluated, result.outcome == Outcome::refused ? 0u : 540u);
+      answered += result.outcome != Outcome::refused;
+    }
+    EXPECT_GT(answered, 0) << directions.name;
+  }
+}
 
 /// A table that cannot fail shows nothing: an evaluator that is wrong by a thousandth, and one that answers
 /// NaN, are found out.
