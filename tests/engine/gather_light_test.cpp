@@ -181,6 +181,22 @@ TEST(GatherLight, WhiteUnderACoatLosesNothing) {
   expect_mean(render_job(job, Techniques::both), Color::Ones(), 1e-3);  // the coat's Smith masking
 }
 
+/// Mean of 576 pixels that see a rough map from two thirds of the way down, as `ndf` settings say.
+void expect_furnace(const std::string& ndf, double lowest, double highest) {
+  const std::string material = "surface = \"noise\"\nroughness = 0.02\nrepeat = [40, 40]\n" + ndf;
+  const std::string job = plane_job(material, "[[light]]\ntype = \"furnace\"\n", 5, "samples = 64");
+  for (const Techniques techniques : {Techniques::both, Techniques::brdf}) {
+    const Mean found = mean_of(render_job(job, techniques), 0);
+    EXPECT_GT(found.mean, lowest - 4.5 * found.error) << ndf;
+    EXPECT_LT(found.mean, highest + 4.5 * found.error) << ndf;
+    EXPECT_LT(found.error, 5e-3) << ndf << ": too noisy to tell";
+  }
+}
+
+TEST(GatherLight, CavitiesCannotBeToldFromTheFurnace) {
+  expect_furnace("ndf = \"cavities\"\n", 0.99, 1.005);
+}
+
 TEST(GatherLight, IsTheSameForAnyBatchAndThreadCount) {
   const std::string material =
       "surface = \"noise\"\nroughness = 0.02\nrepeat = [9, 9]\ndiffuse = [0.1, 0.1, 0.1]\n";

@@ -94,7 +94,8 @@ const std::vector<Mistake> missing_keys = {
     {"[[shape]]\ntype = \"sphere\"", "@[[shape]]\ntype = \"mesh\"",
      "shape.0: found no key \"file\"; expected a Wavefront OBJ file"},
     {"[[light]]\ntype = \"point\"", "@[[light]]",
-     "light.0: found no key \"type\"; expected one of: point, directional, sphere, disk, environment, furnace"},
+     "light.0: found no key \"type\"; expected one of: point, directional, sphere, disk, environment, "
+     "furnace"},
     {"[[light]]\ntype = \"point\"\nposition = [0, 0, 4]", "@[[light]]\ntype = \"point\"",
      "light.0: found no key \"position\"; expected an array of 3 numbers"},
     {"[[light]]\ntype = \"point\"\nposition = [0, 0, 4]", "@[[light]]\ntype = \"directional\"",
@@ -198,10 +199,10 @@ const std::vector<Mistake> wrong_words = {
     {"\"bumps\"", "\"bumps\"\nndf = @\"pyramid\"",
      "material.gold.ndf: found \"pyramid\", which is not available in this version; expected an evaluator "
      "that "
-     "is available: triangles, gaussians, beckmanns, smooth"},
+     "is available: triangles, gaussians, beckmanns, smooth, cavities"},
     {"\"bumps\"", "\"bumps\"\nndf = @\"triangle\"",
      "material.gold.ndf: found \"triangle\"; expected an evaluator that is available: triangles, gaussians, "
-     "beckmanns, smooth (did you mean \"triangles\"?)"},
+     "beckmanns, smooth, cavities (did you mean \"triangles\"?)"},
     {"", "[image]\naovs = [\"uv\", @\"depth\"]",
      "image.aovs.1: found \"depth\" (a string); expected one of: ndf, uv, footprint, normal, queries"},
     {"", "[image]\naovs = [\"uv\", @\"uv\"]", "image.aovs.1: found \"uv\" again; expected each at most once"},

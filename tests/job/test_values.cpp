@@ -384,10 +384,11 @@ class ShippedJob : public testing::TestWithParam<const char*> {};
 TEST_P(ShippedJob, Loads) {
   const Job job = load_job(std::string(MICA_SOURCE_DIR "/data/jobs/") + GetParam(), {});
   EXPECT_FALSE(job.scene.shapes.empty());
-  EXPECT_FALSE(job.scene.lights.empty());
+  EXPECT_FALSE(job.scene.lights.empty() && job.scene.environments.empty());
 }
 
-INSTANTIATE_TEST_SUITE_P(Data, ShippedJob, testing::Values("shell.toml", "paint.toml", "first.toml"));
+INSTANTIATE_TEST_SUITE_P(Data, ShippedJob,
+                         testing::Values("shell.toml", "paint.toml", "first.toml", "studio.toml"));
 
 }  // namespace
 }  // namespace mica::test
