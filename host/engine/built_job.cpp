@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "host/base/stopwatch.h"
 #include "host/engine/make_evaluator.h"
+#include "host/scene/keyframes.h"
+#include "host/surface/in_time.h"
 
 namespace mica {
 namespace {
@@ -24,38 +27,75 @@ double masking_alpha(const Surface& surface, double roughness) {
 }  // namespace
 
 BuiltJob::BuiltJob(const Job& job, const Plan& plan, Device& device)
-    : job_(job), plan_(plan), surfaces_(make_surfaces()), scene_(make_scene()) {
+    : job_(job),
+      plan_(plan),
+      device_(device),
+      frame_(job.frames.first),
+      surfaces_(make_surfaces()),
+      scene_(make_scene()) {
   const Stopwatch watch;
   for (std::size_t n = 0; n < surfaces_.size(); ++n)
     evaluators_.push_back(make_evaluator(plan.evaluators[n].evaluator, device, surfaces_[n]));
   build_seconds_ = watch.seconds();
 }
 
+void BuiltJob::go_to(int frame) {
+  frame_ = frame;
+  surface_seconds_ = scene_seconds_ = build_seconds_ = 0;
+  for (std::size_t n = 0; n < surfaces_.size(); ++n) {
+    if (!moves(job_.surfaces[plan_.evaluators[n].surface_index])) continue;
+    const Stopwatch making;
+    surfaces_[n] = make_surface_of(n, frame);
+    surface_seconds_ += making.seconds();
+    const Stopwatch building;
+    if (evaluators_[n]) past_device_seconds_ += evaluators_[n]->device_seconds();
+    evaluators_[n].reset();  // its buffers go before the new ones come
+    evaluators_[n] = make_evaluator(plan_.evaluators[n].evaluator, device_, surfaces_[n]);
+    build_seconds_ += building.seconds();
+  }
+  const Stopwatch moving;
+  scene_ = scene_.with_view(camera_at(job_.scene, frame), lights_at(job_.scene, frame), masking_alphas());
+  scene_seconds_ = moving.seconds();
+}
+
+Surface BuiltJob::make_surface_of(std::size_t n, int frame) {
+  const SurfaceDescription& description = job_.surfaces[plan_.evaluators[n].surface_index];
+  SurfaceReport report;
+  Surface surface = make_surface(after(description, job_.frames.seconds(frame)), &report);
+  const auto add = [&](const std::string& text, std::vector<std::string>* texts) {
+    const std::string line = fmt::format("surface {}: {}", description.name, text);
+    if (std::find(texts->begin(), texts->end(), line) == texts->end()) texts->push_back(line);
+  };
+  for (const std::string& note : report.notes) add(note, &notes_);
+  for (const std::string& warning : report.warnings) add(warning, &warnings_);
+  return surface;
+}
+
 std::vector<Surface> BuiltJob::make_surfaces() {
   const Stopwatch watch;
   std::vector<Surface> surfaces;
-  for (const PlannedEvaluator& planned : plan_.evaluators) {
-    SurfaceReport report;
-    const SurfaceDescription& description = job_.surfaces[planned.surface_index];
-    surfaces.push_back(make_surface(description, &report));
-    for (const std::string& note : report.notes)
-      notes_.push_back(fmt::format("surface {}: {}", description.name, note));
-    for (const std::string& warning : report.warnings)
-      warnings_.push_back(fmt::format("surface {}: {}", description.name, warning));
-  }
+  for (std::size_t n = 0; n < plan_.evaluators.size(); ++n)
+    surfaces.push_back(make_surface_of(n, job_.frames.first));
   surface_seconds_ = watch.seconds();
   return surfaces;
 }
 
-Scene BuiltJob::make_scene() {
-  const Stopwatch watch;
+std::vector<double> BuiltJob::masking_alphas() const {
   std::vector<double> alphas;
   for (std::size_t n = 0; n < job_.scene.materials.size(); ++n) {
     const int evaluator = plan_.evaluator_of_material[n];
     alphas.push_back(evaluator < 0 ? kUnusedAlpha
                                    : masking_alpha(surfaces_[evaluator], job_.scene.materials[n].roughness));
   }
-  Scene scene(job_.scene, job_.image.width, job_.image.height, job_.image.subpixels, alphas);
+  return alphas;
+}
+
+Scene BuiltJob::make_scene() {
+  const Stopwatch watch;
+  SceneDescription description = job_.scene;
+  description.camera = camera_at(job_.scene, job_.frames.first);
+  description.lights = lights_at(job_.scene, job_.frames.first);
+  Scene scene(description, job_.image.width, job_.image.height, job_.image.subpixels, masking_alphas());
   scene_seconds_ = watch.seconds();
   return scene;
 }
@@ -73,8 +113,8 @@ std::size_t BuiltJob::device_bytes() const {
 }
 
 double BuiltJob::device_seconds() const {
-  double seconds = 0;
-  for (const auto& evaluator : evaluators_) seconds += evaluator->device_seconds();
+  double seconds = past_device_seconds_;
+  for (const auto& evaluator : evaluators_) seconds += evaluator ? evaluator->device_seconds() : 0;
   return seconds;
 }
 

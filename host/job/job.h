@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "host/base/error.h"
+#include "host/image/image.h"
 #include "host/scene/description.h"
 #include "host/surface/description.h"
 
@@ -15,6 +16,16 @@ struct ImageSettings {
   int subpixels = 4;              ///< footprints a pixel and axis [Yan14 sec. 3]
   std::vector<std::string> aovs;  ///< of: ndf, uv, footprint, normal, queries
   double exposure = 0;            ///< of the PNG preview, in stops
+  ToneMap tone_map = ToneMap::shoulder;
+};
+
+/// `[frames]`
+struct FrameSettings {
+  int first = 0, last = 0;  ///< both included
+  double rate = 24;         ///< a second
+  bool given = false;       ///< the job has the table: its images are numbered
+
+  double seconds(int frame) const { return frame / rate; }
 };
 
 struct AuditSettings {
@@ -27,6 +38,7 @@ struct Job {
   std::uint64_t hash = 0;  ///< of the text and the overrides
   std::uint64_t seed = 1;
   ImageSettings image;
+  FrameSettings frames;
   SceneDescription scene;
   std::vector<SurfaceDescription> surfaces;
   AuditSettings audit;

@@ -21,8 +21,8 @@ std::vector<SurfaceDescription> read_surfaces(TableReader& job);
 std::vector<MaterialDescription> read_materials(TableReader& job,
                                                 const std::vector<SurfaceDescription>& surfaces);
 
-/// All `[[light]]`.
-std::vector<LightDescription> read_lights(TableReader& job);
+/// All `[[light]]`, with their keyframes.
+void read_lights(TableReader& job, SceneDescription& scene);
 
 /// `[camera]`, `[[shape]]`, `[[light]]`, `[background]` and the materials.
 SceneDescription read_scene(TableReader& job, const std::vector<SurfaceDescription>& surfaces);

@@ -1,6 +1,7 @@
 #include <optional>
 
 #include "host/job/read_job.h"
+#include "host/job/read_keyframes.h"
 
 namespace mica {
 namespace {
@@ -51,24 +52,28 @@ std::optional<LightDescription> read_kind(TableReader& light) {
   return kind ? std::optional<LightDescription>(*kind) : std::nullopt;
 }
 
-LightDescription read_light(TableReader& light) {
+void read_light(TableReader& light, SceneDescription& scene) {
   std::optional<LightDescription> kind = read_kind(light);
   if (!kind) {
     light.accept_any_key();
-    return PointLight{};
+    scene.lights.emplace_back();  // keeps the others' places
+    scene.light_keys.emplace_back();
+    return;
   }
   const char* place = std::holds_alternative<DirectionalLight>(*kind) ? "direction" : "position";
   light.require(place, "an array of 3 numbers");
-  std::visit([&](auto& described) { read_values(light, described); }, *kind);
-  return *kind;
+  const auto read = [](TableReader& table, LightDescription& described) {
+    std::visit([&](auto& values) { read_values(table, values); }, described);
+  };
+  read(light, *kind);
+  scene.light_keys.push_back(read_keyframes(light, *kind, read));
+  scene.lights.push_back(*kind);
 }
 
 }  // namespace
 
-std::vector<LightDescription> read_lights(TableReader& job) {
-  std::vector<LightDescription> lights;
-  job.read_table_array("light", [&](TableReader& light) { lights.push_back(read_light(light)); });
-  return lights;
+void read_lights(TableReader& job, SceneDescription& scene) {
+  job.read_table_array("light", [&](TableReader& light) { read_light(light, scene); });
 }
 
 }  // namespace mica

@@ -126,12 +126,24 @@ struct BackgroundDescription {
   std::string path;
 };
 
+/// What a camera or a light is at one frame.
+template <class Described>
+struct Keyframe {
+  double frame;
+  Described value;
+};
+/// By increasing frame; empty for what does not move.
+template <class Described>
+using Keyframes = std::vector<Keyframe<Described>>;
+
 struct SceneDescription {
   CameraDescription camera;
   std::vector<MaterialDescription> materials;
   std::vector<ShapeDescription> shapes;
   std::vector<LightDescription> lights;
   BackgroundDescription background;
+  Keyframes<CameraDescription> camera_keys = {};
+  std::vector<Keyframes<LightDescription>> light_keys = {};  ///< by light; lights beyond its end stand still
 };
 
 }  // namespace mica

@@ -200,6 +200,7 @@ Scene::Scene(std::unique_ptr<Implementation> implementation) : implementation_(s
 
 Scene::~Scene() = default;
 Scene::Scene(Scene&&) noexcept = default;
+Scene& Scene::operator=(Scene&&) noexcept = default;
 
 Scene Scene::with_view(const CameraDescription& camera, const std::vector<LightDescription>& lights,
                        const std::vector<double>& masking_alpha) const {
