@@ -7,6 +7,7 @@
 
 #include "host/base/stopwatch.h"
 #include "host/engine/make_evaluator.h"
+#include "host/engine/ndf_brdf.h"
 #include "host/scene/keyframes.h"
 #include "host/surface/in_time.h"
 
@@ -34,9 +35,22 @@ BuiltJob::BuiltJob(const Job& job, const Plan& plan, Device& device)
       surfaces_(make_surfaces()),
       scene_(make_scene()) {
   const Stopwatch watch;
-  for (std::size_t n = 0; n < surfaces_.size(); ++n)
-    evaluators_.push_back(make_evaluator(plan.evaluators[n].evaluator, device, surfaces_[n]));
+  evaluators_.resize(surfaces_.size());
+  brdfs_.resize(plan.gathers_light ? surfaces_.size() : 0);
+  for (std::size_t n = 0; n < surfaces_.size(); ++n) build_evaluator(n);
   build_seconds_ = watch.seconds();
+}
+
+void BuiltJob::build_evaluator(std::size_t n) {
+  const std::string& name = plan_.evaluators[n].evaluator;
+  if (evaluators_[n]) past_device_seconds_ += evaluators_[n]->device_seconds();
+  if (plan_.gathers_light) brdfs_[n].reset();
+  evaluators_[n].reset();  // its buffers go before the new ones come
+  evaluators_[n] = make_evaluator(name, device_, surfaces_[n]);
+  if (!plan_.gathers_light) return;
+  // Of the densities, that of triangles alone is that of the surface's normals, and not an approximation.
+  const auto draws = name == "triangles" ? NdfBrdf::Draws::surface_normals : NdfBrdf::Draws::smooth_lobe;
+  brdfs_[n] = std::make_unique<NdfBrdf>(*evaluators_[n], surfaces_[n], draws);
 }
 
 void BuiltJob::go_to(int frame) {
@@ -48,9 +62,7 @@ void BuiltJob::go_to(int frame) {
     surfaces_[n] = make_surface_of(n, frame);
     surface_seconds_ += making.seconds();
     const Stopwatch building;
-    if (evaluators_[n]) past_device_seconds_ += evaluators_[n]->device_seconds();
-    evaluators_[n].reset();  // its buffers go before the new ones come
-    evaluators_[n] = make_evaluator(plan_.evaluators[n].evaluator, device_, surfaces_[n]);
+    build_evaluator(n);
     build_seconds_ += building.seconds();
   }
   const Stopwatch moving;
@@ -95,7 +107,8 @@ Scene BuiltJob::make_scene() {
   SceneDescription description = job_.scene;
   description.camera = camera_at(job_.scene, job_.frames.first);
   description.lights = lights_at(job_.scene, job_.frames.first);
-  Scene scene(description, job_.image.width, job_.image.height, job_.image.subpixels, masking_alphas());
+  Scene scene(description, job_.image.width, job_.image.height, job_.image.subpixels, masking_alphas(),
+              {plan_.gathers_light, {}});
   scene_seconds_ = watch.seconds();
   return scene;
 }

@@ -6,6 +6,7 @@
 
 #include "host/device/device.h"
 #include "host/engine/evaluator.h"
+#include "host/engine/patch_brdf.h"
 #include "host/engine/plan.h"
 #include "host/job/job.h"
 #include "host/scene/scene.h"
@@ -27,6 +28,7 @@ class BuiltJob {
   const Plan& plan() const { return plan_; }
   const Scene& scene() const { return scene_; }
   Evaluator& evaluator(std::size_t n) const { return *evaluators_[n]; }  ///< by PlannedEvaluator
+  PatchBrdf& brdf(std::size_t n) const { return *brdfs_[n]; }            ///< the same; if light is gathered
   std::vector<const Surface*> surfaces() const;                          ///< by PlannedEvaluator
 
   // Seconds that the latest frame took to build.
@@ -41,6 +43,7 @@ class BuiltJob {
 
  private:
   Surface make_surface_of(std::size_t n, int frame);
+  void build_evaluator(std::size_t n);
   std::vector<Surface> make_surfaces();
   std::vector<double> masking_alphas() const;
   Scene make_scene();
@@ -55,6 +58,7 @@ class BuiltJob {
   std::vector<Surface> surfaces_;
   Scene scene_;
   std::vector<std::unique_ptr<Evaluator>> evaluators_;
+  std::vector<std::unique_ptr<PatchBrdf>> brdfs_;
 };
 
 /// The densities of a block of traced rows, on their way from all evaluators.

@@ -1,4 +1,4 @@
-#include <optional>
+#include <functional>
 
 #include "host/job/read_job.h"
 #include "host/job/read_keyframes.h"
@@ -41,33 +41,56 @@ void read_values(TableReader& light, DiskLight& disk) {
   light.read("intensity", disk.intensity, power);
 }
 
-/// A light of the kind that "type" names; nothing, with a report, when that is not clear.
-std::optional<LightDescription> read_kind(TableReader& light) {
-  const LightDescription point = PointLight{}, directional = DirectionalLight{}, sphere = SphereLight{},
-                         disk = DiskLight{};
-  const LightDescription* kind = nullptr;
-  light.require("type", "one of: point, directional, sphere, disk");
-  light.read("type", kind,
-             {{"point", &point}, {"directional", &directional}, {"sphere", &sphere}, {"disk", &disk}});
-  return kind ? std::optional<LightDescription>(*kind) : std::nullopt;
-}
-
-void read_light(TableReader& light, SceneDescription& scene) {
-  std::optional<LightDescription> kind = read_kind(light);
-  if (!kind) {
-    light.accept_any_key();
-    scene.lights.emplace_back();  // keeps the others' places
-    scene.light_keys.emplace_back();
-    return;
-  }
-  const char* place = std::holds_alternative<DirectionalLight>(*kind) ? "direction" : "position";
+void read_lamp(const LightDescription& kind, TableReader& light, SceneDescription& scene) {
+  LightDescription lamp = kind;
+  const char* place = std::holds_alternative<DirectionalLight>(lamp) ? "direction" : "position";
   light.require(place, "an array of 3 numbers");
   const auto read = [](TableReader& table, LightDescription& described) {
     std::visit([&](auto& values) { read_values(table, values); }, described);
   };
-  read(light, *kind);
-  scene.light_keys.push_back(read_keyframes(light, *kind, read));
-  scene.lights.push_back(*kind);
+  read(light, lamp);
+  scene.light_keys.push_back(read_keyframes(light, lamp, read));
+  scene.lights.push_back(lamp);
+}
+
+EnvironmentLight make_environment(TableReader& light) {
+  EnvironmentLight environment;
+  light.require("image", "a lat-long EXR or HDR image");
+  light.read_file("image", environment.path);
+  light.read("scale", environment.radiance, power);
+  light.read("rotation", environment.rotation_degrees, closed(-360, 360));
+  return environment;
+}
+
+EnvironmentLight make_furnace(TableReader& light) {
+  EnvironmentLight furnace;
+  light.read("radiance", furnace.radiance, power);
+  return furnace;
+}
+
+/// A light of the kind that "type" names; nothing, with a report, when that is not clear.
+void read_light(TableReader& light, SceneDescription& scene) {
+  using Make = std::function<void()>;
+  const auto lamp = [&](const LightDescription& kind) {
+    return Make([&light, &scene, kind] { read_lamp(kind, light, scene); });
+  };
+  const auto far = [&](EnvironmentLight (*make)(TableReader&)) {
+    return Make([&light, &scene, make] { scene.environments.push_back(make(light)); });
+  };
+  Make make;
+  light.require("type", "one of: point, directional, sphere, disk, environment, furnace");
+  light.read("type", make,
+             {{"point", lamp(PointLight{})},
+              {"directional", lamp(DirectionalLight{})},
+              {"sphere", lamp(SphereLight{})},
+              {"disk", lamp(DiskLight{})},
+              {"environment", far(make_environment)},
+              {"furnace", far(make_furnace)}});
+  if (make) {
+    make();
+  } else {
+    light.accept_any_key();
+  }
 }
 
 }  // namespace

@@ -120,6 +120,7 @@ SceneDescription read_scene(TableReader& job, const std::vector<SurfaceDescripti
   job.read_table_array(
       "shape", [&](TableReader& table) { read_shape(table, scene.shapes.emplace_back(), material_names); });
   read_lights(job, scene);
+  scene.background.is_environment = !scene.environments.empty() && !job.has("background");
   job.read_table("background", [&](TableReader& table) { read_background(table, scene.background); });
   return scene;
 }
