@@ -2,12 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "host/base/stopwatch.h"
 #include "host/engine/make_evaluator.h"
 #include "host/engine/make_patch_brdf.h"
 #include "host/engine/ndf_brdf.h"
+#include "host/scene/keyframes.h"
+#include "host/surface/in_time.h"
 
 namespace mica {
 namespace {
@@ -26,20 +29,28 @@ double masking_alpha(const Surface& surface, double roughness) {
 }  // namespace
 
 BuiltJob::BuiltJob(const Job& job, const Plan& plan, Device& device)
-    : job_(job), plan_(plan), surfaces_(make_surfaces()), scene_(make_scene()) {
+    : job_(job),
+      plan_(plan),
+      device_(device),
+      frame_(job.frames.first),
+      surfaces_(make_surfaces()),
+      scene_(make_scene()) {
   const Stopwatch watch;
-  for (std::size_t n = 0; n < surfaces_.size(); ++n) build(n, device);
+  evaluators_.resize(surfaces_.size());
+  brdfs_.resize(surfaces_.size());
+  for (std::size_t n = 0; n < surfaces_.size(); ++n) build_evaluator(n);
   build_seconds_ = watch.seconds();
 }
 
-void BuiltJob::build(std::size_t n, Device& device) {
+void BuiltJob::build_evaluator(std::size_t n) {
   const PlannedEvaluator& planned = plan_.evaluators[n];
-  evaluators_.emplace_back();
-  brdfs_.emplace_back();
+  past_device_seconds_ += device_seconds_of(n);
+  brdfs_[n].reset();  // buffers go before the new ones come
+  evaluators_[n].reset();
   if (planned.asks_densities)
-    evaluators_[n] = make_evaluator(planned.evaluator, device, surfaces_[n], planned.elements);
+    evaluators_[n] = make_evaluator(planned.evaluator, device_, surfaces_[n], planned.elements);
   if (planned.patch_brdf) {
-    brdfs_[n] = make_patch_brdf(planned.evaluator, device, surfaces_[n],
+    brdfs_[n] = make_patch_brdf(planned.evaluator, device_, surfaces_[n],
                                 {planned.masking, planned.elements, planned.compensation, planned.energy});
   } else if (plan_.gathers_light) {
     // Of the densities, that of triangles alone is that of the surface's normals, and not an approximation.
@@ -49,36 +60,73 @@ void BuiltJob::build(std::size_t n, Device& device) {
   }
 }
 
+void BuiltJob::go_to(int frame) {
+  frame_ = frame;
+  surface_seconds_ = scene_seconds_ = build_seconds_ = 0;
+  for (std::size_t n = 0; n < surfaces_.size(); ++n) {
+    if (!moves(job_.surfaces[plan_.evaluators[n].surface_index])) continue;
+    const Stopwatch making;
+    surfaces_[n] = make_surface_of(n, frame);
+    surface_seconds_ += making.seconds();
+    const Stopwatch building;
+    build_evaluator(n);
+    build_seconds_ += building.seconds();
+  }
+  const Stopwatch moving;
+  scene_ = scene_.with_view(camera_at(job_.scene, frame), lights_at(job_.scene, frame), masking_alphas());
+  scene_seconds_ = moving.seconds();
+}
+
+Surface BuiltJob::make_surface_of(std::size_t n, int frame) {
+  const SurfaceDescription& description = job_.surfaces[plan_.evaluators[n].surface_index];
+  SurfaceReport report;
+  Surface surface = make_surface(after(description, job_.frames.seconds(frame)), &report);
+  const auto add = [&](const std::string& text, std::vector<std::string>* texts) {
+    const std::string line = fmt::format("surface {}: {}", description.name, text);
+    if (std::find(texts->begin(), texts->end(), line) == texts->end()) texts->push_back(line);
+  };
+  for (const std::string& note : report.notes) add(note, &notes_);
+  for (const std::string& warning : report.warnings) add(warning, &warnings_);
+  return surface;
+}
+
 std::vector<Surface> BuiltJob::make_surfaces() {
   const Stopwatch watch;
   std::vector<Surface> surfaces;
-  for (const PlannedEvaluator& planned : plan_.evaluators) {
-    SurfaceReport report;
-    const SurfaceDescription& description = job_.surfaces[planned.surface_index];
-    surfaces.push_back(make_surface(description, &report));
-    for (const std::string& note : report.notes)
-      notes_.push_back(fmt::format("surface {}: {}", description.name, note));
-    for (const std::string& warning : report.warnings)
-      warnings_.push_back(fmt::format("surface {}: {}", description.name, warning));
-  }
+  for (std::size_t n = 0; n < plan_.evaluators.size(); ++n)
+    surfaces.push_back(make_surface_of(n, job_.frames.first));
   surface_seconds_ = watch.seconds();
   return surfaces;
 }
 
-Scene BuiltJob::make_scene() {
-  const Stopwatch watch;
+std::vector<double> BuiltJob::masking_alphas() const {
   std::vector<double> alphas;
+  for (std::size_t n = 0; n < job_.scene.materials.size(); ++n) {
+    const int evaluator = plan_.evaluator_of_material[n];
+    alphas.push_back(evaluator < 0 ? kUnusedAlpha
+                                   : masking_alpha(surfaces_[evaluator], job_.scene.materials[n].roughness));
+  }
+  return alphas;
+}
+
+LightGathering BuiltJob::gathering() const {
   LightGathering gathering{plan_.gathers_light, {}};
   for (std::size_t n = 0; n < job_.scene.materials.size(); ++n) {
     const int evaluator = plan_.evaluator_of_material[n];
     // A coat bends directions before they reach the patch, and is made for densities.
     gathering.patch_materials.push_back(evaluator >= 0 && plan_.evaluators[evaluator].patch_brdf &&
                                         !job_.scene.materials[n].coat);
-    alphas.push_back(evaluator < 0 ? kUnusedAlpha
-                                   : masking_alpha(surfaces_[evaluator], job_.scene.materials[n].roughness));
   }
-  Scene scene(job_.scene, job_.image.width, job_.image.height, job_.image.subpixels, alphas,
-              std::move(gathering));
+  return gathering;
+}
+
+Scene BuiltJob::make_scene() {
+  const Stopwatch watch;
+  SceneDescription description = job_.scene;
+  description.camera = camera_at(job_.scene, job_.frames.first);
+  description.lights = lights_at(job_.scene, job_.frames.first);
+  Scene scene(description, job_.image.width, job_.image.height, job_.image.subpixels, masking_alphas(),
+              gathering());
   scene_seconds_ = watch.seconds();
   return scene;
 }
@@ -98,12 +146,15 @@ std::size_t BuiltJob::device_bytes() const {
   return bytes;
 }
 
+double BuiltJob::device_seconds_of(std::size_t n) const {
+  double seconds = evaluators_[n] ? evaluators_[n]->device_seconds() : 0;
+  if (plan_.evaluators[n].patch_brdf && brdfs_[n]) seconds += brdfs_[n]->device_seconds();
+  return seconds;
+}
+
 double BuiltJob::device_seconds() const {
-  double seconds = 0;
-  for (std::size_t n = 0; n < evaluators_.size(); ++n) {
-    if (evaluators_[n]) seconds += evaluators_[n]->device_seconds();
-    if (plan_.evaluators[n].patch_brdf) seconds += brdfs_[n]->device_seconds();
-  }
+  double seconds = past_device_seconds_;
+  for (std::size_t n = 0; n < evaluators_.size(); ++n) seconds += device_seconds_of(n);
   return seconds;
 }
 

@@ -14,11 +14,15 @@
 
 namespace mica {
 
-/// Everything that a plan names, built: surfaces, scene, and evaluators on the device.
+/// Everything that a plan names, built: surfaces, scene, and evaluators on the device; at one frame.
 class BuiltJob {
  public:
-  /// All three must outlive it. Throws mica::Error.
+  /// At the job's first frame. All three must outlive it. Throws mica::Error.
   BuiltJob(const Job& job, const Plan& plan, Device& device);
+
+  /// Goes on to another frame: camera and lights move, surfaces that change are made again, and nothing else.
+  void go_to(int frame);
+  int frame() const { return frame_; }
 
   const Job& job() const { return job_; }
   const Plan& plan() const { return plan_; }
@@ -29,6 +33,7 @@ class BuiltJob {
   PatchBrdf& brdf(std::size_t n) const { return *brdfs_[n]; }
   std::vector<const Surface*> surfaces() const;  ///< by PlannedEvaluator
 
+  // Seconds that the latest frame took to build.
   double surface_seconds() const { return surface_seconds_; }
   double scene_seconds() const { return scene_seconds_; }
   double build_seconds() const { return build_seconds_; }
@@ -39,13 +44,20 @@ class BuiltJob {
   const std::vector<std::string>& warnings() const { return warnings_; }  ///< of the surfaces
 
  private:
+  Surface make_surface_of(std::size_t n, int frame);
+  void build_evaluator(std::size_t n);
   std::vector<Surface> make_surfaces();
-  void build(std::size_t n, Device& device);
+  std::vector<double> masking_alphas() const;
+  LightGathering gathering() const;
+  double device_seconds_of(std::size_t n) const;
   Scene make_scene();
 
   const Job& job_;
   const Plan& plan_;
+  Device& device_;
+  int frame_;
   double surface_seconds_ = 0, scene_seconds_ = 0, build_seconds_ = 0;
+  double past_device_seconds_ = 0;  // of evaluators that are no more
   std::vector<std::string> notes_, warnings_;
   std::vector<Surface> surfaces_;
   Scene scene_;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "host/base/error.h"
+#include "host/image/image.h"
 #include "host/scene/description.h"
 #include "host/surface/description.h"
 
@@ -17,6 +18,16 @@ struct ImageSettings {
   int max_bounces = 1;            ///< reflections of light on its way to the camera, at most
   std::vector<std::string> aovs;  ///< of: ndf, uv, footprint, normal, queries
   double exposure = 0;            ///< of the PNG preview, in stops
+  ToneMap tone_map = ToneMap::shoulder;
+};
+
+/// `[frames]`
+struct FrameSettings {
+  int first = 0, last = 0;  ///< both included
+  double rate = 24;         ///< a second
+  bool given = false;       ///< the job has the table: its images are numbered
+
+  double seconds(int frame) const { return frame / rate; }
 };
 
 struct AuditSettings {
@@ -29,6 +40,7 @@ struct Job {
   std::uint64_t hash = 0;  ///< of the text and the overrides
   std::uint64_t seed = 1;
   ImageSettings image;
+  FrameSettings frames;
   SceneDescription scene;
   std::vector<SurfaceDescription> surfaces;
   AuditSettings audit;

@@ -21,7 +21,7 @@ std::vector<SurfaceDescription> read_surfaces(TableReader& job);
 std::vector<MaterialDescription> read_materials(TableReader& job,
                                                 const std::vector<SurfaceDescription>& surfaces);
 
-/// All `[[light]]`.
+/// All `[[light]]`, with their keyframes.
 void read_lights(TableReader& job, SceneDescription& scene);
 
 /// `[camera]`, `[[shape]]`, `[[light]]`, `[background]` and the materials.

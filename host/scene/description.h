@@ -142,6 +142,16 @@ struct BackgroundDescription {
   bool is_environment = false;  ///< the scene's environment lights instead
 };
 
+/// What a camera or a light is at one frame.
+template <class Described>
+struct Keyframe {
+  double frame;
+  Described value;
+};
+/// By increasing frame; empty for what does not move.
+template <class Described>
+using Keyframes = std::vector<Keyframe<Described>>;
+
 struct SceneDescription {
   CameraDescription camera;
   std::vector<MaterialDescription> materials;
@@ -149,6 +159,8 @@ struct SceneDescription {
   std::vector<LightDescription> lights;
   std::vector<EnvironmentLight> environments;
   BackgroundDescription background;
+  Keyframes<CameraDescription> camera_keys = {};
+  std::vector<Keyframes<LightDescription>> light_keys = {};  ///< by light; lights beyond its end stand still
 };
 
 }  // namespace mica

@@ -236,6 +236,7 @@ Scene::Scene(std::unique_ptr<Implementation> implementation) : implementation_(s
 
 Scene::~Scene() = default;
 Scene::Scene(Scene&&) noexcept = default;
+Scene& Scene::operator=(Scene&&) noexcept = default;
 
 const Geometry& Scene::geometry() const {
   return implementation_->shared->geometry;

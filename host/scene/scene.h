@@ -60,6 +60,7 @@ class Scene {
         std::vector<double> masking_alpha = {}, LightGathering gathering = {});
   ~Scene();
   Scene(Scene&&) noexcept;
+  Scene& operator=(Scene&&) noexcept;
 
   /// The same shapes and background from another camera under other lights; they are shared, not built again.
   Scene with_view(const CameraDescription& camera, const std::vector<LightDescription>& lights,

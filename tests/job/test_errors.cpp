@@ -33,11 +33,12 @@ const char* const surface_keys = "resolution, rms_slope, correlation, seed";
 const std::vector<Mistake> unknown_keys = {
     {"", "[image]\n  @widht = 3",
      "image.widht: found an unknown key; expected one of: width, height, subpixels, samples, max_bounces, "
-     "aovs, exposure "
+     "aovs, exposure, tone_map "
      "(did you mean \"width\"?)"},
     {"", "[audit]\n@turbo = 1", "audit.turbo: found an unknown key; expected \"samples\""},
     {"", "[@lights]",
-     "lights: found an unknown key; expected one of: seed, image, surface, camera, material, shape, light, "
+     "lights: found an unknown key; expected one of: seed, image, frames, surface, camera, material, shape, "
+     "light, "
      "background, audit (did you mean \"light\"?)"},
     {"\"spectrum\"", "\"spectrum\"\n@flake_size = 3",
      std::string("surface.bumps.flake_size: found an unknown key; expected one of: generate, ") +
