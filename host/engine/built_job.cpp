@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "host/base/stopwatch.h"
+#include "host/engine/auto_evaluator.h"
 #include "host/engine/make_evaluator.h"
 #include "host/engine/ndf_brdf.h"
 
@@ -27,8 +28,11 @@ double masking_alpha(const Surface& surface, double roughness) {
 BuiltJob::BuiltJob(const Job& job, const Plan& plan, Device& device)
     : job_(job), plan_(plan), surfaces_(make_surfaces()), scene_(make_scene()) {
   const Stopwatch watch;
-  for (std::size_t n = 0; n < surfaces_.size(); ++n)
-    evaluators_.push_back(make_evaluator(plan.evaluators[n].evaluator, device, surfaces_[n]));
+  for (std::size_t n = 0; n < surfaces_.size(); ++n) {
+    const std::string& name = plan.evaluators[n].evaluator;
+    evaluators_.push_back(name == "auto" ? calibrated_evaluator(n, device)
+                                         : make_evaluator(name, device, surfaces_[n]));
+  }
   for (std::size_t n = 0; n < surfaces_.size() && plan.gathers_light; ++n) {
     // Of the densities, that of triangles alone is that of the surface's normals, and not an approximation.
     const auto draws = plan.evaluators[n].evaluator == "triangles" ? NdfBrdf::Draws::surface_normals
@@ -36,6 +40,30 @@ BuiltJob::BuiltJob(const Job& job, const Plan& plan, Device& device)
     brdfs_.push_back(std::make_unique<NdfBrdf>(*evaluators_[n], surfaces_[n], draws));
   }
   build_seconds_ = watch.seconds();
+}
+
+/// `auto`, calibrated with the queries of some rows of the image.
+std::unique_ptr<Evaluator> BuiltJob::calibrated_evaluator(std::size_t n, Device& device) {
+  constexpr int most_rows = 24;
+  constexpr std::size_t samples_a_class = 64;
+  const Surface& surface = surfaces_[n];
+  const int height = job_.image.height, rows = std::min(height, most_rows);
+  std::vector<Query> queries;
+  for (int row = 0; row < rows; ++row)
+    for (const GlintQuery& glint : scene_.trace((2 * row + 1) * height / (2 * rows), 1).queries)
+      if (plan_.evaluator_of_material[glint.material] == static_cast<int>(n)) queries.push_back(glint.query);
+  const double tolerance = job_.accuracy.tolerance;
+  auto evaluator = std::make_unique<AutoEvaluator>(device, surface, tolerance);
+  evaluator->calibrate(calibration_sample(queries.size(), samples_a_class, surface.width(), surface.height(),
+                                          [&](std::size_t k) { return queries[k]; }));
+  for (const AutoChoice& choice : evaluator->choices())
+    notes_.push_back(
+        fmt::format("surface {}: auto takes {} for footprints of about {:.3g} texels: relative L2 {:.2g}, at "
+                    "most {:.2g} at 95% "
+                    "confidence by {} of the job's queries; tolerance {}",
+                    plan_.evaluators[n].surface, choice.evaluator, std::exp2(choice.kind.size),
+                    choice.relative_l2, choice.upper_bound, choice.samples, tolerance));
+  return evaluator;
 }
 
 std::vector<Surface> BuiltJob::make_surfaces() {

@@ -39,6 +39,7 @@ class BuiltJob {
  private:
   std::vector<Surface> make_surfaces();
   Scene make_scene();
+  std::unique_ptr<Evaluator> calibrated_evaluator(std::size_t n, Device& device);
 
   const Job& job_;
   const Plan& plan_;

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "host/build/map_structure.h"
+#include "host/engine/pyramid_evaluator.h"
 #include "host/scene/scene.h"
 #include "host/surface/map_size.h"
 #include "kernels/types.h"
@@ -42,6 +43,8 @@ PlannedEvaluator plan_evaluator(const Job& job, int surface_index, const std::st
       fmt::format("{}.cl -DMICA_INTERPOLATION={}", evaluator, static_cast<int>(surface.interpolation));
   planned.host_bytes = sizeof(Eigen::Vector2d) * size.width * size.height;
   planned.device_bytes = map_structure_bytes(size.width, size.height);
+  if (evaluator != "triangles") planned.device_bytes += 4 * PyramidSettings{}.level_bytes / 3;  // at most
+  if (evaluator == "auto") planned.kernel = "chosen from a sample of the job's queries";
   return planned;
 }
 

@@ -47,9 +47,9 @@ CoatDescription read_coat(TableReader& table) {
 }
 
 void read_evaluator(TableReader& material, std::string& ndf) {
-  const std::vector<std::string_view> available = {"triangles"};
-  const std::vector<std::string_view> planned = {"auto", "gaussians", "beckmanns", "cavities",
-                                                 "grid", "smooth",    "pyramid",   "reference"};
+  const std::vector<std::string_view> available = {"triangles", "pyramid", "auto"};
+  const std::vector<std::string_view> planned = {"gaussians", "beckmanns", "cavities",
+                                                 "grid",      "smooth",    "reference"};
   std::string word = ndf;
   material.read("ndf", word);
   if (std::find(available.begin(), available.end(), word) != available.end()) {

@@ -196,9 +196,9 @@ const std::vector<Mistake> wrong_words = {
     {"\"bumps\"", "\"bumps\"\nndf = @\"gaussians\"",
      "material.gold.ndf: found \"gaussians\", which is not available in this version; expected an evaluator "
      "that "
-     "is available: triangles"},
+     "is available: triangles, pyramid, auto"},
     {"\"bumps\"", "\"bumps\"\nndf = @\"triangle\"",
-     "material.gold.ndf: found \"triangle\"; expected an evaluator that is available: triangles (did you "
+     "material.gold.ndf: found \"triangle\"; expected an evaluator that is available: triangles, pyramid, auto (did you "
      "mean "
      "\"triangles\"?)"},
     {"", "[image]\naovs = [\"uv\", @\"depth\"]",
