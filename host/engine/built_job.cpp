@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "host/base/stopwatch.h"
+#include "host/engine/auto_evaluator.h"
 #include "host/engine/make_evaluator.h"
 #include "host/engine/make_patch_brdf.h"
 #include "host/engine/ndf_brdf.h"
@@ -47,8 +48,7 @@ void BuiltJob::build_evaluator(std::size_t n) {
   past_device_seconds_ += device_seconds_of(n);
   brdfs_[n].reset();  // buffers go before the new ones come
   evaluators_[n].reset();
-  if (planned.asks_densities)
-    evaluators_[n] = make_evaluator(planned.evaluator, device_, surfaces_[n], planned.elements);
+  if (planned.asks_densities) evaluators_[n] = make_density_evaluator(n);
   if (planned.patch_brdf) {
     brdfs_[n] = make_patch_brdf(planned.evaluator, device_, surfaces_[n],
                                 {planned.masking, planned.elements, planned.compensation, planned.energy});
@@ -58,6 +58,36 @@ void BuiltJob::build_evaluator(std::size_t n) {
         planned.evaluator == "triangles" ? NdfBrdf::Draws::surface_normals : NdfBrdf::Draws::smooth_lobe;
     brdfs_[n] = std::make_unique<NdfBrdf>(*evaluators_[n], surfaces_[n], draws);
   }
+}
+
+std::unique_ptr<Evaluator> BuiltJob::make_density_evaluator(std::size_t n) {
+  const PlannedEvaluator& planned = plan_.evaluators[n];
+  if (planned.evaluator == "auto") return calibrated_evaluator(n);
+  return make_evaluator(planned.evaluator, device_, surfaces_[n], planned.elements);
+}
+
+/// `auto`, calibrated with the queries of some rows of the image.
+std::unique_ptr<Evaluator> BuiltJob::calibrated_evaluator(std::size_t n) {
+  constexpr int most_rows = 24;
+  constexpr std::size_t samples_a_class = 64;
+  const Surface& surface = surfaces_[n];
+  const int height = job_.image.height, rows = std::min(height, most_rows);
+  std::vector<Query> queries;
+  for (int row = 0; row < rows; ++row)
+    for (const GlintQuery& glint : scene_.trace((2 * row + 1) * height / (2 * rows), 1).queries)
+      if (plan_.evaluator_of_material[glint.material] == static_cast<int>(n)) queries.push_back(glint.query);
+  const double tolerance = job_.accuracy.tolerance;
+  auto evaluator = std::make_unique<AutoEvaluator>(device_, surface, tolerance);
+  evaluator->calibrate(calibration_sample(queries.size(), samples_a_class, surface.width(), surface.height(),
+                                          [&](std::size_t k) { return queries[k]; }));
+  for (const AutoChoice& choice : evaluator->choices())
+    notes_.push_back(
+        fmt::format("surface {}: auto takes {} for footprints of about {:.3g} texels: relative L2 {:.2g}, at "
+                    "most {:.2g} at 95% "
+                    "confidence by {} of the job's queries; tolerance {}",
+                    plan_.evaluators[n].surface, choice.evaluator, std::exp2(choice.kind.size),
+                    choice.relative_l2, choice.upper_bound, choice.samples, tolerance));
+  return evaluator;
 }
 
 void BuiltJob::go_to(int frame) {

@@ -51,6 +51,8 @@ class BuiltJob {
   LightGathering gathering() const;
   double device_seconds_of(std::size_t n) const;
   Scene make_scene();
+  std::unique_ptr<Evaluator> make_density_evaluator(std::size_t n);
+  std::unique_ptr<Evaluator> calibrated_evaluator(std::size_t n);
 
   const Job& job_;
   const Plan& plan_;

@@ -12,6 +12,7 @@
 #include "host/build/mixture.h"
 #include "host/build/slope_pyramid.h"
 #include "host/engine/make_patch_brdf.h"
+#include "host/engine/pyramid_evaluator.h"
 #include "host/scene/scene.h"
 #include "host/surface/map_size.h"
 #include "kernels/types.h"
@@ -52,6 +53,10 @@ void plan_structure(PlannedEvaluator* planned) {
     if (planned->energy == LostEnergy::table) planned->host_bytes += footprint_energy_bytes(width, height);
     planned->kernel += fmt::format(" -DMICA_INTERPOLATION={} -DMICA_SEEDS={}",
                                    static_cast<int>(planned->interpolation), elements);
+  } else if (planned->evaluator == "pyramid" || planned->evaluator == "auto") {
+    planned->device_bytes =
+        map_structure_bytes(width, height) + 4 * PyramidSettings{}.level_bytes / 3;  // at most
+    if (planned->evaluator == "auto") planned->kernel = "chosen from a sample of the job's queries";
   } else {
     planned->device_bytes = planned->evaluator == "gaussians" ? gaussian_mixture_bytes(width, height)
                                                               : map_structure_bytes(width, height);

@@ -34,6 +34,10 @@ struct AuditSettings {
   int samples = 0;  ///< queries of the job that the oracle re-evaluates
 };
 
+struct AccuracySettings {
+  double tolerance = 0.01;  ///< relative L2 that materials with ndf = "auto" keep
+};
+
 /// A validated job: everything in range, every name resolved, every input file present.
 struct Job {
   std::string path;
@@ -44,6 +48,7 @@ struct Job {
   SceneDescription scene;
   std::vector<SurfaceDescription> surfaces;
   AuditSettings audit;
+  AccuracySettings accuracy;
 };
 
 /// One mistake in a job file or in an override.

@@ -89,6 +89,9 @@ void read_root(TableReader& table, Job& job) {
   table.read_table("frames", [&](TableReader& frames) { job.frames = read_frames(frames); });
   job.surfaces = read_surfaces(table);
   job.scene = read_scene(table, job.surfaces);
+  table.read_table("accuracy", [&](TableReader& accuracy) {
+    accuracy.read("tolerance", job.accuracy.tolerance, closed(5e-4, 0.5));
+  });
   table.read_table("audit",
                    [&](TableReader& audit) { audit.read("samples", job.audit.samples, closed(0, 1e6)); });
 }

@@ -53,8 +53,8 @@ CoatDescription read_coat(TableReader& table) {
 
 void read_evaluator(TableReader& material, std::string& ndf) {
   const std::vector<std::string_view> available = {"triangles", "gaussians", "beckmanns", "smooth",
-                                                   "cavities"};
-  const std::vector<std::string_view> planned = {"auto", "grid", "pyramid", "reference"};
+                                                   "cavities",  "pyramid",   "auto"};
+  const std::vector<std::string_view> planned = {"grid", "reference"};
   std::string word = ndf;
   material.read("ndf", word);
   if (std::find(available.begin(), available.end(), word) != available.end()) {

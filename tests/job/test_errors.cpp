@@ -197,13 +197,13 @@ const std::vector<Mistake> wrong_words = {
      "\"bumps\"?)"},
     {"material = \"gold\"", "material = @\"silver\"",
      "shape.0.material: found \"silver\"; expected the name of a material, \"gold\""},
-    {"\"bumps\"", "\"bumps\"\nndf = @\"pyramid\"",
-     "material.gold.ndf: found \"pyramid\", which is not available in this version; expected an evaluator "
+    {"\"bumps\"", "\"bumps\"\nndf = @\"reference\"",
+     "material.gold.ndf: found \"reference\", which is not available in this version; expected an evaluator "
      "that "
-     "is available: triangles, gaussians, beckmanns, smooth, cavities"},
+     "is available: triangles, gaussians, beckmanns, smooth, cavities, pyramid, auto"},
     {"\"bumps\"", "\"bumps\"\nndf = @\"triangle\"",
      "material.gold.ndf: found \"triangle\"; expected an evaluator that is available: triangles, gaussians, "
-     "beckmanns, smooth, cavities (did you mean \"triangles\"?)"},
+     "beckmanns, smooth, cavities, pyramid, auto (did you mean \"triangles\"?)"},
     {"", "[image]\naovs = [\"uv\", @\"depth\"]",
      "image.aovs.1: found \"depth\" (a string); expected one of: ndf, uv, footprint, normal, queries"},
     {"", "[image]\naovs = [\"uv\", @\"uv\"]", "image.aovs.1: found \"uv\" again; expected each at most once"},
