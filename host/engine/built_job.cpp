@@ -5,12 +5,13 @@
 #include <cmath>
 
 #include "host/base/stopwatch.h"
+#include "host/engine/glint_plan.h"
 #include "host/engine/make_evaluator.h"
 
 namespace mica {
 namespace {
 
-constexpr double kUnusedAlpha = 0.1;  // of materials that no shape has
+constexpr double kUnusedAlpha = 0.1;  // of materials that no shape has, or that have no map
 
 /// Beckmann roughness of a map as a whole, for Smith's G: slopes of variance alpha^2 / 2 an axis, and the
 /// roughness.
@@ -26,15 +27,28 @@ double masking_alpha(const Surface& surface, double roughness) {
 BuiltJob::BuiltJob(const Job& job, const Plan& plan, Device& device)
     : job_(job), plan_(plan), surfaces_(make_surfaces()), scene_(make_scene()) {
   const Stopwatch watch;
-  for (std::size_t n = 0; n < surfaces_.size(); ++n)
-    evaluators_.push_back(make_evaluator(plan.evaluators[n].evaluator, device, surfaces_[n]));
+  glints_.resize(surfaces_.size());
+  for (std::size_t n = 0; n < surfaces_.size(); ++n) {
+    const PlannedEvaluator& planned = plan.evaluators[n];
+    if (planned.glints_material >= 0) {
+      auto glints = make_glint_evaluator(job.scene.materials[planned.glints_material], device);
+      glints_[n] = glints.get();
+      evaluators_.push_back(std::move(glints));
+    } else {
+      evaluators_.push_back(make_evaluator(planned.evaluator, device, *surfaces_[n]));
+    }
+  }
   build_seconds_ = watch.seconds();
 }
 
-std::vector<Surface> BuiltJob::make_surfaces() {
+std::vector<std::optional<Surface>> BuiltJob::make_surfaces() {
   const Stopwatch watch;
-  std::vector<Surface> surfaces;
+  std::vector<std::optional<Surface>> surfaces;
   for (const PlannedEvaluator& planned : plan_.evaluators) {
+    if (planned.surface_index < 0) {
+      surfaces.emplace_back();
+      continue;
+    }
     SurfaceReport report;
     const SurfaceDescription& description = job_.surfaces[planned.surface_index];
     surfaces.push_back(make_surface(description, &report));
@@ -52,8 +66,9 @@ Scene BuiltJob::make_scene() {
   std::vector<double> alphas;
   for (std::size_t n = 0; n < job_.scene.materials.size(); ++n) {
     const int evaluator = plan_.evaluator_of_material[n];
-    alphas.push_back(evaluator < 0 ? kUnusedAlpha
-                                   : masking_alpha(surfaces_[evaluator], job_.scene.materials[n].roughness));
+    alphas.push_back(evaluator < 0 || !surfaces_[evaluator]
+                         ? kUnusedAlpha
+                         : masking_alpha(*surfaces_[evaluator], job_.scene.materials[n].roughness));
   }
   Scene scene(job_.scene, job_.image.width, job_.image.height, job_.image.subpixels, alphas);
   scene_seconds_ = watch.seconds();
@@ -62,7 +77,7 @@ Scene BuiltJob::make_scene() {
 
 std::vector<const Surface*> BuiltJob::surfaces() const {
   std::vector<const Surface*> pointers;
-  for (const Surface& surface : surfaces_) pointers.push_back(&surface);
+  for (const std::optional<Surface>& surface : surfaces_) pointers.push_back(surface ? &*surface : nullptr);
   return pointers;
 }
 
@@ -86,8 +101,38 @@ PendingBlock::PendingBlock(TracedRows rows, const BuiltJob& built)
     parts_[evaluator].places.push_back(n);
     queries[evaluator].push_back(rows_.queries[n].query);
   }
-  for (std::size_t n = 0; n < parts_.size(); ++n)
-    if (!queries[n].empty()) parts_[n].pending = built.evaluator(n).start(queries[n]);
+  for (std::size_t n = 0; n < parts_.size(); ++n) {
+    if (queries[n].empty()) continue;
+    if (built.glints(n)) {
+      start_glints(n, built, queries[n]);
+    } else {
+      parts_[n].pending = built.evaluator(n).start(queries[n]);
+    }
+  }
+}
+
+void PendingBlock::start_glints(std::size_t evaluator, const BuiltJob& built,
+                                const std::vector<Query>& queries) {
+  Part& part = parts_[evaluator];
+  std::vector<GlintPoint> points;
+  points.reserve(queries.size());
+  for (const std::size_t place : part.places) points.push_back(rows_.queries[place].glints);
+  std::unique_ptr<GridDensities> pending = built.glints(evaluator)->start(queries, points);
+  const int material = built.plan().evaluators[evaluator].glints_material;
+  part.colors = built.job().scene.materials[material].glints->colors;
+  if (!part.colors.empty()) part.glints = pending.get();
+  part.pending = std::move(pending);
+}
+
+/// The mean colour of a query's glints goes into its weight.
+void PendingBlock::tint(const Part& part, const std::vector<float>& densities) {
+  for (std::size_t n = 0; n < densities.size(); ++n) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (std::size_t color = 0; color < part.colors.size(); ++color)
+      sum += part.colors[color] * static_cast<double>(part.glints->density_of_color(color, n));
+    Eigen::Vector3f& weight = rows_.queries[part.places[n]].weight;
+    if (densities[n] > 0) weight = weight.cwiseProduct((sum / densities[n]).cast<float>());
+  }
 }
 
 std::vector<float> PendingBlock::wait() {
@@ -96,6 +141,7 @@ std::vector<float> PendingBlock::wait() {
     if (!part.pending) continue;
     const std::vector<float> answers = part.pending->wait();
     for (std::size_t n = 0; n < answers.size(); ++n) densities[part.places[n]] = answers[n];
+    if (part.glints) tint(part, answers);
   }
   return densities;
 }

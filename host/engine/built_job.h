@@ -1,11 +1,13 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "host/device/device.h"
 #include "host/engine/evaluator.h"
+#include "host/engine/grid_evaluator.h"
 #include "host/engine/plan.h"
 #include "host/job/job.h"
 #include "host/scene/scene.h"
@@ -23,7 +25,8 @@ class BuiltJob {
   const Plan& plan() const { return plan_; }
   const Scene& scene() const { return scene_; }
   Evaluator& evaluator(std::size_t n) const { return *evaluators_[n]; }  ///< by PlannedEvaluator
-  std::vector<const Surface*> surfaces() const;                          ///< by PlannedEvaluator
+  std::vector<const Surface*> surfaces() const;  ///< by PlannedEvaluator; null without a map
+  GridEvaluator* glints(std::size_t n) const { return glints_[n]; }  ///< the same; null with a map
 
   double surface_seconds() const { return surface_seconds_; }
   double scene_seconds() const { return scene_seconds_; }
@@ -35,16 +38,17 @@ class BuiltJob {
   const std::vector<std::string>& warnings() const { return warnings_; }  ///< of the surfaces
 
  private:
-  std::vector<Surface> make_surfaces();
+  std::vector<std::optional<Surface>> make_surfaces();
   Scene make_scene();
 
   const Job& job_;
   const Plan& plan_;
   double surface_seconds_ = 0, scene_seconds_ = 0, build_seconds_ = 0;
   std::vector<std::string> notes_, warnings_;
-  std::vector<Surface> surfaces_;
+  std::vector<std::optional<Surface>> surfaces_;  // by PlannedEvaluator
   Scene scene_;
   std::vector<std::unique_ptr<Evaluator>> evaluators_;
+  std::vector<GridEvaluator*> glints_;  // those of evaluators_ that are
 };
 
 /// The densities of a block of traced rows, on their way from all evaluators.
@@ -52,6 +56,7 @@ class PendingBlock {
  public:
   PendingBlock(TracedRows rows, const BuiltJob& built);
 
+  /// Once waited for, the weights of glints are tinted by their colours.
   const TracedRows& rows() const { return rows_; }
   /// D of every query, in the order of rows().queries. Call once.
   std::vector<float> wait();
@@ -60,7 +65,12 @@ class PendingBlock {
   struct Part {
     std::vector<std::size_t> places;
     std::unique_ptr<PendingDensities> pending;
+    const GridDensities* glints = nullptr;   // `pending`, when it has colours
+    std::vector<Eigen::Vector3d> colors;
   };
+  void start_glints(std::size_t evaluator, const BuiltJob& built, const std::vector<Query>& queries);
+  void tint(const Part& part, const std::vector<float>& densities);
+
   TracedRows rows_;
   std::vector<Part> parts_;  // by evaluator
 };

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "host/build/map_structure.h"
+#include "host/engine/glint_plan.h"
 #include "host/scene/scene.h"
 #include "host/surface/map_size.h"
 #include "kernels/types.h"
@@ -48,6 +49,7 @@ PlannedEvaluator plan_evaluator(const Job& job, int surface_index, const std::st
 /// Index of the evaluator that a material needs, planned now if it is the first to need it.
 int evaluator_for(const Job& job, const MaterialDescription& material,
                   std::vector<PlannedEvaluator>* planned) {
+  if (material.glints) return plan_glints(job.scene.materials, material, planned);
   const auto surface = std::find_if(job.surfaces.begin(), job.surfaces.end(),
                                     [&](const SurfaceDescription& s) { return s.name == material.surface; });
   const int surface_index = static_cast<int>(surface - job.surfaces.begin());
@@ -111,6 +113,11 @@ Plan make_plan(const Job& job) {
 std::string describe(const Plan& plan) {
   std::string text;
   for (const PlannedEvaluator& e : plan.evaluators) {
+    if (e.glints_material >= 0) {
+      text += fmt::format("{} for {}: no map, nothing built, kernel {}\n", e.evaluator,
+                          fmt::join(e.materials, ", "), e.kernel);
+      continue;
+    }
     text += fmt::format("{} on surface {} ({} x {} texels, {}) for {}: {:.1f} MiB on the device, kernel {}\n",
                         e.evaluator, e.surface, e.width, e.height, name_of(e.interpolation),
                         fmt::join(e.materials, ", "), mebibytes(e.device_bytes), e.kernel);

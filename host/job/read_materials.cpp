@@ -40,9 +40,9 @@ Fresnel read_specular(TableReader& specular) {
 }
 
 void read_evaluator(TableReader& material, std::string& ndf) {
-  const std::vector<std::string_view> available = {"triangles"};
+  const std::vector<std::string_view> available = {"triangles", "grid"};
   const std::vector<std::string_view> planned = {"auto", "gaussians", "beckmanns", "cavities",
-                                                 "grid", "smooth",    "pyramid",   "reference"};
+                                                 "smooth",    "pyramid",   "reference"};
   std::string word = ndf;
   material.read("ndf", word);
   if (std::find(available.begin(), available.end(), word) != available.end()) {
@@ -67,11 +67,15 @@ std::vector<MaterialDescription> read_materials(TableReader& job,
   job.read_named_tables("material", [&](TableReader& table) {
     MaterialDescription material;
     material.name = table.name();
-    table.require("surface", "the name of a surface");
-    table.read_reference("surface", material.surface, "surface", surface_names);
     table.read("repeat", material.repeat, open_low(0, 1e6));
     read_evaluator(table, material.ndf);
-    table.read("roughness", material.roughness, closed(1e-4, 1));
+    if (material.ndf == "grid") {
+      read_glints(table, material);
+    } else {
+      table.require("surface", "the name of a surface");
+      table.read_reference("surface", material.surface, "surface", surface_names);
+      table.read("roughness", material.roughness, closed(1e-4, 1));
+    }
     table.read_table("specular", [&](TableReader& specular) { material.specular = read_specular(specular); });
     table.read("diffuse", material.diffuse, reflectance);
     materials.push_back(std::move(material));

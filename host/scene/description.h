@@ -1,9 +1,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
+
+#include "host/scene/glints_description.h"
 
 namespace mica {
 
@@ -39,6 +42,7 @@ struct MaterialDescription {
   double roughness = 0.01;        ///< sigma_r on the disk
   Fresnel specular = ColorFresnel{};
   Color diffuse{0, 0, 0};  ///< Lambertian albedo
+  std::optional<GlintsDescription> glints;  ///< of the evaluator "grid", which needs no surface
 };
 
 struct PlaneShape {  ///< square of the plane z = height, uv over its sides

@@ -13,6 +13,7 @@
 #include "host/scene/camera.h"
 #include "host/scene/footprint.h"
 #include "host/scene/geometry.h"
+#include "host/scene/glint_material.h"
 #include "host/scene/shading.h"
 
 namespace mica {
@@ -50,6 +51,15 @@ struct IsUsableLight {
            light.irradiance.minCoeff() >= 0;
   }
 };
+
+/// Of all materials that a shape has and that are made of glints without a map.
+std::vector<std::optional<GlintMaterial>> glint_materials(const std::vector<MaterialDescription>& materials,
+                                                          const std::vector<std::uint32_t>& shape_material) {
+  std::vector<std::optional<GlintMaterial>> glints(materials.size());
+  for (const std::uint32_t n : shape_material)
+    if (materials[n].glints && !glints[n]) glints[n].emplace(materials[n]);
+  return glints;
+}
 
 /// Sums of one pixel's AOVs over the subpixels that hit a shape.
 class PixelMeans {
@@ -94,6 +104,7 @@ struct Scene::Implementation {
   Geometry geometry;
   Background background;
   std::vector<MaterialDescription> materials;
+  std::vector<std::optional<GlintMaterial>> glints;  ///< of each material
   std::vector<double> masking_alpha;          ///< of each material
   std::vector<std::uint32_t> shape_material;  ///< index of each shape's material
   std::vector<LightDescription> lights;
@@ -120,8 +131,8 @@ Scene::Scene(const SceneDescription& description, int width, int height, int sub
   std::vector<std::uint32_t> shape_material = materials_of_shapes(description);
   implementation_.reset(
       new Implementation{PinholeCamera(description.camera, width, height), Geometry(description.shapes),
-                         Background(description.background), description.materials, std::move(masking_alpha),
-                         std::move(shape_material), description.lights, width, height, subpixels});
+                         Background(description.background), description.materials,
+                         glint_materials(description.materials, shape_material), std::move(masking_alpha), std::move(shape_material), description.lights, width, height, subpixels});
 }
 
 Scene::~Scene() = default;
@@ -144,6 +155,9 @@ Color Scene::Implementation::shade(const CameraRay& ray, const Hit& hit, std::ui
   means->add(query.query.footprint, frame.z);
   Color diffuse = Color::Zero();
   if (frame.face_normal.dot(to_eye) < min_cosine) return diffuse;
+  const GlintMaterial* glint_material = glints[material_index] ? &*glints[material_index] : nullptr;
+  std::vector<GlintPlace> places = {{query.query.footprint, frame.x, frame.y, material.roughness, {}}};
+  if (glint_material) places = glint_material->places(ray, hit, frame, filter_sigma_subpixels / subpixels);
 
   for (const LightDescription& light : lights) {
     const Illumination incident = illuminate(light, hit.position);
@@ -152,12 +166,20 @@ Color Scene::Implementation::shade(const CameraRay& ray, const Hit& hit, std::ui
     if (geometry.occluded(hit, incident.direction, incident.distance)) continue;
     diffuse += (material.diffuse / pi * cos_i).cwiseProduct(incident.irradiance);
 
-    query.query.half_vector = frame.on_disk((to_eye + incident.direction).normalized());
-    query.weight =
-        glint_weight(material.specular, masking_alpha[material_index], frame.z, to_eye, incident.direction)
-            .cwiseProduct(incident.irradiance / (subpixels * subpixels))
-            .cast<float>();
-    if (query.weight.maxCoeff() > 0) queries->push_back(query);
+    const Color weight =
+        glint_material
+            ? glint_material->weight(hit, places.front(), frame, to_eye, incident.direction)
+            : glint_weight(material.specular, masking_alpha[material_index], frame.z, to_eye, incident.direction);
+    query.weight = weight.cwiseProduct(incident.irradiance / (subpixels * subpixels)).cast<float>();
+    if (!(query.weight.maxCoeff() > 0)) continue;
+    const Eigen::Vector3d half = (to_eye + incident.direction).normalized();
+    for (const GlintPlace& place : places) {
+      query.query.footprint = place.footprint;
+      query.query.half_vector = {half.dot(place.x), half.dot(place.y)};
+      query.query.roughness = place.microroughness;
+      query.glints = place.point;
+      queries->push_back(query);
+    }
   }
   return diffuse;
 }

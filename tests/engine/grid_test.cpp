@@ -19,12 +19,7 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 
 reference::GlintProcess process_of(const GlintGrid& grid) {
-  return {grid.distribution == Distribution::beckmann,
-          grid.alpha_x,
-          grid.alpha_y,
-          grid.density,
-          grid.stretch,
-          grid.seed};
+  return reference::GlintProcess(grid.point());
 }
 
 /// Uniform numbers in [0, 1).
