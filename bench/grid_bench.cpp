@@ -10,7 +10,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "bench/fma_peak.h"
+#include "host/bench/fma_peak.h"
 #include "host/base/error.h"
 #include "host/engine/grid_evaluator.h"
 

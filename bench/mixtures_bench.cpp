@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
-#include "bench/coherent.h"
-#include "bench/fma_peak.h"
+#include "host/bench/coherent.h"
+#include "host/bench/fma_peak.h"
 #include "host/base/error.h"
 #include "host/base/stopwatch.h"
 #include "host/engine/mixture_evaluator.h"

@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
-#include "bench/coherent.h"
-#include "bench/fma_peak.h"
+#include "host/bench/coherent.h"
+#include "host/bench/fma_peak.h"
 #include "bench/paper_recursion.h"
 #include "host/base/error.h"
 #include "host/base/stopwatch.h"

@@ -1,4 +1,4 @@
-#include "bench/coherent.h"
+#include "host/bench/coherent.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@ constexpr int kSide = 256;  // queries a side of the block of neighbouring footp
 
 }  // namespace
 
-std::vector<Query> coherent_queries(const Surface& surface, double sigma_texels) {
+std::vector<Query> coherent_queries(const Surface& surface, double sigma_texels, double roughness) {
   std::vector<Query> queries(kSide * kSide);
   const double sigma_uv = sigma_texels / surface.width();
   for (int n = 0; n < kSide * kSide; ++n) {
@@ -18,7 +18,7 @@ std::vector<Query> coherent_queries(const Surface& surface, double sigma_texels)
     queries[n].footprint.mean_uv = {0.3 + x * sigma_uv, 0.4 + y * sigma_uv};
     queries[n].footprint.cov_uv = Eigen::Matrix2d::Identity() * sigma_uv * sigma_uv;
     queries[n].half_vector = {0.15 * x / kSide, 0.05 - 0.1 * y / kSide};
-    queries[n].roughness = 0.005;
+    queries[n].roughness = roughness;
   }
   return queries;
 }

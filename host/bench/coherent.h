@@ -9,9 +9,9 @@
 
 namespace mica::bench {
 
-/// 65,536 neighbouring footprints, one standard deviation apart, at roughness 0.005, and a half vector that
-/// turns slowly: a highlight's edge.
-std::vector<Query> coherent_queries(const Surface& surface, double sigma_texels);
+/// 65,536 neighbouring footprints, one standard deviation apart, and a half vector that turns slowly: a
+/// highlight's edge.
+std::vector<Query> coherent_queries(const Surface& surface, double sigma_texels, double roughness = 0.005);
 
 /// Every `stride`-th query: what slow evaluators are timed on.
 std::vector<Query> thinned(const std::vector<Query>& queries, std::size_t stride);
