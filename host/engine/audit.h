@@ -16,7 +16,7 @@ struct AuditSample {
   Query query;
   float density = 0;
   int evaluator = 0;
-  GlintPoint glints;  ///< of evaluators without a surface
+  GlintPoint glints{};  ///< of evaluators without a surface
 };
 
 /// A uniform random sample of a job's queries. It depends on the seed and on the queries' places in the image

@@ -65,7 +65,7 @@ class PendingBlock {
   struct Part {
     std::vector<std::size_t> places;
     std::unique_ptr<PendingDensities> pending;
-    const GridDensities* glints = nullptr;   // `pending`, when it has colours
+    const GridDensities* glints = nullptr;  // `pending`, when it has colours
     std::vector<Eigen::Vector3d> colors;
   };
   void start_glints(std::size_t evaluator, const BuiltJob& built, const std::vector<Query>& queries);

@@ -8,8 +8,8 @@ namespace mica {
 /// What the kernel has to do for a material of glints, and nothing else.
 GridFeatures glint_features(const GlintsDescription& glints);
 
-/// Index of the evaluator of one of `materials`, which is of glints; planned now if it is the first to need it.
-/// It has no surface and no memory, only a kernel; materials with the same kernel and colours share it.
+/// Index of the evaluator of one of `materials`, which is of glints; planned now if it is the first to need
+/// it. It has no surface and no memory, only a kernel; materials with the same kernel and colours share it.
 int plan_glints(const std::vector<MaterialDescription>& materials, const MaterialDescription& material,
                 std::vector<PlannedEvaluator>* planned);
 

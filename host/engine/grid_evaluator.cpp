@@ -22,7 +22,8 @@ double seconds_of(const cl::Event& event) {
 
 std::string grid_kernel_options(Distribution distribution, const GridFeatures& features) {
   return fmt::format("-DMICA_DISTRIBUTION={} -DMICA_GLINT_COLORS={} -DMICA_GLINT_ROULETTE={}",
-                     distribution == Distribution::beckmann ? 0 : 1, features.colors, features.roulette ? 1 : 0);
+                     distribution == Distribution::beckmann ? 0 : 1, features.colors,
+                     features.roulette ? 1 : 0);
 }
 
 /// Queries on the device and the memory that it reads and writes meanwhile.

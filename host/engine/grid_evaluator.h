@@ -39,7 +39,8 @@ class GridEvaluator : public Evaluator {
   /// All queries must pass `grid_query_problem`.
   std::unique_ptr<PendingDensities> start(const std::vector<Query>& queries) override;
   /// @param points what the glints are at each query; all of the evaluator's distribution.
-  std::unique_ptr<GridDensities> start(const std::vector<Query>& queries, const std::vector<GlintPoint>& points);
+  std::unique_ptr<GridDensities> start(const std::vector<Query>& queries,
+                                       const std::vector<GlintPoint>& points);
   std::string name() const override { return "grid"; }
   std::size_t device_bytes() const override { return 0; }
   double build_seconds() const override { return 0; }

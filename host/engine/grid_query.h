@@ -34,8 +34,8 @@ struct GridBatch {
   std::vector<std::int32_t> fields;  ///< MICA_GLINT_FIELDS x pitch; floats by their bits
 };
 
-/// Queries [first, first + count) of a batch, whose cells are found in double precision. @param points one for
-/// all queries, or one for each.
+/// Queries [first, first + count) of a batch, whose cells are found in double precision. @param points one
+/// for all queries, or one for each.
 ///
 /// The level of detail l is where the footprint's larger standard deviation is an eighth to a quarter of a
 /// cell, so that 2x2 cells always hold the footprint to 3e-3 of its weight [Kem25 sec. 3.3.2]. Footprints are

@@ -10,9 +10,9 @@ namespace mica {
 
 /// One evaluator on one surface: what is built, uploaded and compiled for it.
 struct PlannedEvaluator {
-  std::string surface;    ///< name in the job; empty for "grid", which needs none
-  std::string evaluator;  ///< e.g. "triangles"
-  int surface_index = 0;  ///< into Job::surfaces; -1: none
+  std::string surface;       ///< name in the job; empty for "grid", which needs none
+  std::string evaluator;     ///< e.g. "triangles"
+  int surface_index = 0;     ///< into Job::surfaces; -1: none
   int glints_material = -1;  ///< into SceneDescription::materials: whose glints these are
   int width = 0, height = 0;
   Interpolation interpolation = Interpolation::bilinear;

@@ -42,8 +42,9 @@ void read_glints(TableReader& material, MaterialDescription& description) {
   if (glints.mapping == Mapping::triplanar) {
     const bool has_direction = glints.alpha.x() != glints.alpha.y() || glints.stretch != 1;
     if (has_direction || !glints.textures.stretch.empty())
-      material.report("mapping", "found glints with a direction on three planes, which have none in common; "
-                                 "expected one alpha and no stretch, or mapping = \"uv\"");
+      material.report("mapping",
+                      "found glints with a direction on three planes, which have none in common; "
+                      "expected one alpha and no stretch, or mapping = \"uv\"");
   }
 }
 

@@ -41,8 +41,8 @@ Fresnel read_specular(TableReader& specular) {
 
 void read_evaluator(TableReader& material, std::string& ndf) {
   const std::vector<std::string_view> available = {"triangles", "grid"};
-  const std::vector<std::string_view> planned = {"auto", "gaussians", "beckmanns", "cavities",
-                                                 "smooth",    "pyramid",   "reference"};
+  const std::vector<std::string_view> planned = {"auto",   "gaussians", "beckmanns", "cavities",
+                                                 "smooth", "pyramid",   "reference"};
   std::string word = ndf;
   material.read("ndf", word);
   if (std::find(available.begin(), available.end(), word) != available.end()) {

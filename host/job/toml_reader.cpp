@@ -172,7 +172,8 @@ void TableReader::read(std::string_view key, std::vector<Eigen::Vector3d>& value
   const toml::array* array = node->as_array();
   if (!array || array->empty() || array->size() > most) {
     const std::string found = array ? fmt::format("an array of {}", array->size()) : describe(*node);
-    return report(key, fmt::format("found {}; expected an array of 1 to {} arrays of 3 numbers", found, most));
+    return report(key,
+                  fmt::format("found {}; expected an array of 1 to {} arrays of 3 numbers", found, most));
   }
   values.assign(array->size(), Eigen::Vector3d::Zero());
   for (std::size_t i = 0; i < array->size(); ++i)

@@ -80,7 +80,8 @@ void add_level(const Problem& problem, int level, double weight, std::vector<dou
               std::exp(-0.5 * n.squaredNorm()) / (2 * kPi * sigma_angle.x() * sigma_angle.y());
           const double r = glint.roulette;
           sums[static_cast<std::size_t>(glint.color * colors)] +=
-              smoothstep(std::max(0.0, r - 0.1), std::min(1.0, r + 0.1), weight) * spatial * angular *  // Eq. 8
+              smoothstep(std::max(0.0, r - 0.1), std::min(1.0, r + 0.1), weight) * spatial *
+              angular *  // Eq. 8
               presence(glint.presence, problem.share * problem.kept) / problem.kept;
         }
 

@@ -41,7 +41,7 @@ struct MaterialDescription {
   std::string ndf = "triangles";  ///< evaluator
   double roughness = 0.01;        ///< sigma_r on the disk
   Fresnel specular = ColorFresnel{};
-  Color diffuse{0, 0, 0};  ///< Lambertian albedo
+  Color diffuse{0, 0, 0};                   ///< Lambertian albedo
   std::optional<GlintsDescription> glints;  ///< of the evaluator "grid", which needs no surface
 };
 

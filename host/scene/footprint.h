@@ -7,8 +7,9 @@
 
 namespace mica {
 
-/// Change of the position per pixel to the right (first column) and down (second column), on the tangent plane
-/// of the hit: ray differentials [Igehy99], Homan Igehy, "Tracing Ray Differentials", SIGGRAPH 1999, sec. 3.1.
+/// Change of the position per pixel to the right (first column) and down (second column), on the tangent
+/// plane of the hit: ray differentials [Igehy99], Homan Igehy, "Tracing Ray Differentials", SIGGRAPH 1999,
+/// sec. 3.1.
 Eigen::Matrix<double, 3, 2> position_differentials(const CameraRay& ray, const Hit& hit);
 
 /// The same of the shape's uv.

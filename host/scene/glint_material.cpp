@@ -4,16 +4,16 @@
 #include <algorithm>
 #include <cmath>
 
-#include "host/scene/fresnel.h"
 #include "host/scene/footprint.h"
+#include "host/scene/fresnel.h"
 #include "host/scene/glint_masking.h"
 
 namespace mica {
 namespace {
 
-constexpr int kStretchSteps = 8;     // of a texture, from round to the material's stretch
+constexpr int kStretchSteps = 8;       // of a texture, from round to the material's stretch
 constexpr double kLeastCosine = 0.02;  // to a plane of the world; what is seen so askew has no share
-constexpr double kPeriod = 1 << 20;  // of repeated uv: further out, cells would be lost to rounding
+constexpr double kPeriod = 1 << 20;    // of repeated uv: further out, cells would be lost to rounding
 
 std::optional<Texture> texture_of(const std::string& path) {
   if (path.empty()) return std::nullopt;
@@ -121,7 +121,8 @@ Color GlintMaterial::weight(const Hit& hit, const GlintPlace& place, const Tange
   const Eigen::Vector2d alpha(place.point.alpha_x, place.point.alpha_y);
   const double G = glint_masking(glints_, alpha, in_frame(to_eye), in_frame(to_light));
   const Eigen::Vector3d half = (to_eye + to_light).normalized();
-  const Color reflected = reflectance(material_.specular, to_light.dot(half)) * (G / (4 * to_eye.dot(frame.z)));
+  const Color reflected =
+      reflectance(material_.specular, to_light.dot(half)) * (G / (4 * to_eye.dot(frame.z)));
   return color_ ? reflected.cwiseProduct(color_->at(hit.uv).cwiseMax(0).cwiseMin(1)) : reflected;
 }
 

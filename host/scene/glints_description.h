@@ -26,8 +26,8 @@ struct GlintsDescription {
 
   Distribution distribution = Distribution::trowbridge_reitz;
   Eigen::Vector2d alpha{0.3, 0.3};  ///< of the smooth distribution, along u and v
-  double density = 1e6;             ///< cells per unit area of repeated uv; triplanar: of repeated world units
-  double stretch = 1;               ///< of each glint along u
+  double density = 1e6;  ///< cells per unit area of repeated uv; triplanar: of repeated world units
+  double stretch = 1;    ///< of each glint along u
   std::uint32_t seed = 1;
   Mapping mapping = Mapping::uv;
   Masking masking = Masking::smith;

@@ -105,8 +105,8 @@ struct Scene::Implementation {
   Background background;
   std::vector<MaterialDescription> materials;
   std::vector<std::optional<GlintMaterial>> glints;  ///< of each material
-  std::vector<double> masking_alpha;          ///< of each material
-  std::vector<std::uint32_t> shape_material;  ///< index of each shape's material
+  std::vector<double> masking_alpha;                 ///< of each material
+  std::vector<std::uint32_t> shape_material;         ///< index of each shape's material
   std::vector<LightDescription> lights;
   int width, height, subpixels;
 
@@ -132,7 +132,8 @@ Scene::Scene(const SceneDescription& description, int width, int height, int sub
   implementation_.reset(
       new Implementation{PinholeCamera(description.camera, width, height), Geometry(description.shapes),
                          Background(description.background), description.materials,
-                         glint_materials(description.materials, shape_material), std::move(masking_alpha), std::move(shape_material), description.lights, width, height, subpixels});
+                         glint_materials(description.materials, shape_material), std::move(masking_alpha),
+                         std::move(shape_material), description.lights, width, height, subpixels});
 }
 
 Scene::~Scene() = default;
@@ -166,10 +167,10 @@ Color Scene::Implementation::shade(const CameraRay& ray, const Hit& hit, std::ui
     if (geometry.occluded(hit, incident.direction, incident.distance)) continue;
     diffuse += (material.diffuse / pi * cos_i).cwiseProduct(incident.irradiance);
 
-    const Color weight =
-        glint_material
-            ? glint_material->weight(hit, places.front(), frame, to_eye, incident.direction)
-            : glint_weight(material.specular, masking_alpha[material_index], frame.z, to_eye, incident.direction);
+    const Color weight = glint_material
+                             ? glint_material->weight(hit, places.front(), frame, to_eye, incident.direction)
+                             : glint_weight(material.specular, masking_alpha[material_index], frame.z, to_eye,
+                                            incident.direction);
     query.weight = weight.cwiseProduct(incident.irradiance / (subpixels * subpixels)).cast<float>();
     if (!(query.weight.maxCoeff() > 0)) continue;
     const Eigen::Vector3d half = (to_eye + incident.direction).normalized();

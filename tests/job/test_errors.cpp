@@ -188,9 +188,10 @@ const std::vector<Mistake> wrong_words = {
     {"\"bumps\"", "\"bumps\"\nndf = @\"gaussians\"",
      "material.gold.ndf: found \"gaussians\", which is not available in this version; expected an evaluator "
      "that "
-     "is available: triangles"},
+     "is available: triangles, grid"},
     {"\"bumps\"", "\"bumps\"\nndf = @\"triangle\"",
-     "material.gold.ndf: found \"triangle\"; expected an evaluator that is available: triangles (did you "
+     "material.gold.ndf: found \"triangle\"; expected an evaluator that is available: triangles, grid (did "
+     "you "
      "mean "
      "\"triangles\"?)"},
     {"", "[image]\naovs = [\"uv\", @\"depth\"]",
