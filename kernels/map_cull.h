@@ -60,4 +60,22 @@ static inline int block_of(int i, int size, int blocks) {
   return period * blocks + (i - period * size) / MICA_BLOCK;
 }
 
+// First and last of the blocks [first_x, last_x] in row `block_y` that the footprint can reach: a long one that lies
+// obliquely passes by most of the blocks around it. Of |W (x, y)|^2 <= cutoff at height y there remains
+// |x + q / p y| <= sqrt(cutoff / p), where W'W = (p q; q r).
+static inline int2 blocks_in_reach(global const mica_map_query* query, mica_map_grid grid, int block_y, int first_x, int last_x) {
+  const int period_y = floor_divide(block_y, grid.blocks_y), inside_y = (block_y - period_y * grid.blocks_y) * MICA_BLOCK;
+  const float bottom = (float)(period_y * grid.height + inside_y - query->mean_j) - query->mean_y;
+  const float top = bottom + (float)min(MICA_BLOCK, grid.height - inside_y);
+  const float p = fma(query->whiten_1x, query->whiten_1x, query->whiten_2x * query->whiten_2x);
+  const float q = fma(query->whiten_1x, query->whiten_1y, query->whiten_2x * query->whiten_2y);
+  const float slope = -q / p, at_bottom = slope * bottom, at_top = slope * top;
+  // The slack is for rounding, which grows with the distance.
+  const float reach = fma(1e-4f, max(fabs(at_bottom), fabs(at_top)), 1.001f * sqrt(query->cutoff / p) + 1.0f);
+  const float left = max(min(at_bottom, at_top) - reach, -query->extent_x), right = min(max(at_bottom, at_top) + reach, query->extent_x);
+  if (left > right) return (int2)(first_x, first_x - 1);
+  const int left_i = query->mean_i + (int)floor(query->mean_x + left), right_i = query->mean_i + (int)floor(query->mean_x + right);
+  return (int2)(max(first_x, block_of(left_i, grid.width, grid.blocks_x)), min(last_x, block_of(right_i, grid.width, grid.blocks_x)));
+}
+
 #endif  // MICA_MAP_CULL_H

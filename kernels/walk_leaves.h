@@ -25,7 +25,8 @@ static inline void walk_leaves(global const LEAF_QUERY* query, mica_map_grid gri
   const int first_y = block_of(place->mean_j + first_j, grid.height, grid.blocks_y);
   const int last_y = block_of(place->mean_j + last_j, grid.height, grid.blocks_y);
   for (int block_y = first_y; block_y <= last_y; ++block_y) {
-    for (int block_x = first_x; block_x <= last_x; ++block_x) {
+    const int2 reach = blocks_in_reach(place, grid, block_y, first_x, last_x);
+    for (int block_x = reach.x; block_x <= reach.y; ++block_x) {
       const map_block block = locate_block(grid, place, block_x, block_y);
       const int map_room_i = grid.width - (block.index % grid.blocks_x) * MICA_BLOCK;
       const int map_room_j = grid.height - (block.index / grid.blocks_x) * MICA_BLOCK;

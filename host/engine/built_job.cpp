@@ -11,7 +11,7 @@
 namespace mica {
 namespace {
 
-constexpr double kUnusedAlpha = 0.1;  // of materials that no shape has, or that have no map
+constexpr double kUnusedAlpha = 0.1;  // of materials that no shape has
 
 /// Beckmann roughness of a map as a whole, for Smith's G: slopes of variance alpha^2 / 2 an axis, and the
 /// roughness.
@@ -66,9 +66,13 @@ Scene BuiltJob::make_scene() {
   std::vector<double> alphas;
   for (std::size_t n = 0; n < job_.scene.materials.size(); ++n) {
     const int evaluator = plan_.evaluator_of_material[n];
-    alphas.push_back(evaluator < 0 || !surfaces_[evaluator]
-                         ? kUnusedAlpha
-                         : masking_alpha(*surfaces_[evaluator], job_.scene.materials[n].roughness));
+    const MaterialDescription& material = job_.scene.materials[n];
+    if (evaluator < 0) {
+      alphas.push_back(kUnusedAlpha);
+    } else {
+      alphas.push_back(material.glints ? std::sqrt(material.glints->alpha.prod())
+                                       : masking_alpha(*surfaces_[evaluator], material.roughness));
+    }
   }
   Scene scene(job_.scene, job_.image.width, job_.image.height, job_.image.subpixels, alphas);
   scene_seconds_ = watch.seconds();

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/LU>
 #include <cmath>
+#include <utility>
 
 #include "host/build/mixture.h"
 
@@ -29,15 +31,39 @@ void wrap_texel(double coordinate, int size, double shift, std::int32_t* whole, 
   *whole = (*whole % size + size) % size;
 }
 
-/// On a periodic map a footprint far wider than a period is a uniform one, and so is one of 0.8 periods: of
-/// the wrapped Gaussian's Fourier series exp(-2 pi^2 sigma^2 |k|^2) only 4 * 3e-6 is left beside the mean.
+/// Two integer vectors that span all others, such that `form` of the first is the least of all and that of
+/// the second the least of those it does not divide: Lagrange's reduction.
+Eigen::Matrix2d reduced_waves(const Eigen::Matrix2d& form) {
+  Eigen::Vector2d a(1, 0), b(0, 1);
+  for (;;) {
+    if (a.dot(form * a) > b.dot(form * b)) std::swap(a, b);
+    const double multiple = std::round(a.dot(form * b) / a.dot(form * a));
+    if (multiple == 0) break;
+    const Eigen::Vector2d shorter = b - multiple * a;
+    if (!(shorter.dot(form * shorter) < b.dot(form * b))) break;
+    b = shorter;
+  }
+  Eigen::Matrix2d waves;
+  waves << a, b;
+  return waves;
+}
+
+/// On a periodic map a footprint weights each wave k of the map's Fourier series, k a pair of integers, by
+/// exp(-2 pi^2 k' cov k). Where that exponent lets nothing through, covariances that let nothing through
+/// either are as good: a footprint of many periods has one of at most 0.8, of which 4 * 3e-6 is left beside
+/// the mean. One that is long only one way, and still sees waves across it, becomes as short as keeps just
+/// those: 0.8 periods of the lattice line along it.
 Footprint without_needless_periods(const Footprint& footprint) {
   constexpr double uniform_variance = 0.8 * 0.8;
-  const Eigen::Matrix2d& cov = footprint.cov_uv;
-  const double smallest =
-      0.5 * (cov(0, 0) + cov(1, 1)) - std::hypot(0.5 * (cov(0, 0) - cov(1, 1)), cov(0, 1));
-  if (smallest <= uniform_variance) return footprint;
-  return {footprint.mean_uv, Eigen::Matrix2d::Identity() * uniform_variance};
+  const Eigen::Matrix2d waves = reduced_waves(footprint.cov_uv);
+  const Eigen::Matrix2d form = waves.transpose() * footprint.cov_uv * waves;
+  if (form(1, 1) <= uniform_variance) return footprint;
+  if (form(0, 0) > uniform_variance)
+    return {footprint.mean_uv, Eigen::Matrix2d::Identity() * uniform_variance};
+  const Eigen::Matrix2d to_plane =
+      waves.inverse().array().round().matrix();  // of integers: its determinant is 1
+  const Eigen::Vector2d variances(form(0, 0), uniform_variance);
+  return {footprint.mean_uv, to_plane.transpose() * variances.asDiagonal() * to_plane};
 }
 
 std::int32_t to_fixed(double normal) {

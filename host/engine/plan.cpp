@@ -85,7 +85,10 @@ double mebibytes(std::size_t bytes) {
 Plan make_plan(const Job& job) {
   Plan plan;
   std::set<std::string> used;
-  for (const ShapeDescription& shape : job.scene.shapes) used.insert(shape.material);
+  for (const ShapeDescription& shape : job.scene.shapes) {
+    used.insert(shape.material);
+    for (const PartMaterial& part : shape.parts) used.insert(part.material);
+  }
   for (const MaterialDescription& material : job.scene.materials)
     plan.evaluator_of_material.push_back(
         used.count(material.name) ? evaluator_for(job, material, &plan.evaluators) : -1);

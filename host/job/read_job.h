@@ -24,6 +24,9 @@ std::vector<MaterialDescription> read_materials(TableReader& job,
 /// What a `[material.NAME]` says about glints without a map, `ndf = "grid"`.
 void read_glints(TableReader& material, MaterialDescription& description);
 
+/// All `[[light]]`.
+std::vector<LightDescription> read_lights(TableReader& job);
+
 /// `[camera]`, `[[shape]]`, `[[light]]`, `[background]` and the materials.
 SceneDescription read_scene(TableReader& job, const std::vector<SurfaceDescription>& surfaces);
 

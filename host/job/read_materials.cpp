@@ -39,6 +39,13 @@ Fresnel read_specular(TableReader& specular) {
   return conductor ? read_conductor(specular) : dielectric ? read_dielectric(specular) : read_color(specular);
 }
 
+CoatDescription read_coat(TableReader& table) {
+  CoatDescription coat;
+  table.read("ior", coat.ior, closed(1.01, 4));
+  table.read("roughness", coat.roughness, closed(1e-3, 1));
+  return coat;
+}
+
 void read_evaluator(TableReader& material, std::string& ndf) {
   const std::vector<std::string_view> available = {"triangles", "grid"};
   const std::vector<std::string_view> planned = {"auto",   "gaussians", "beckmanns", "cavities",
@@ -78,6 +85,7 @@ std::vector<MaterialDescription> read_materials(TableReader& job,
     }
     table.read_table("specular", [&](TableReader& specular) { material.specular = read_specular(specular); });
     table.read("diffuse", material.diffuse, reflectance);
+    table.read_table("coat", [&](TableReader& coat) { material.coat = read_coat(coat); });
     materials.push_back(std::move(material));
   });
   return materials;

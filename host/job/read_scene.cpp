@@ -26,13 +26,6 @@ void read_camera(TableReader& table, CameraDescription& camera) {
 
 using Geometry = decltype(ShapeDescription::geometry);
 
-Geometry read_plane(TableReader& shape) {
-  PlaneShape plane;
-  shape.read("center", plane.center, coordinate);
-  shape.read("size", plane.size, extent);
-  return plane;
-}
-
 Geometry read_sphere(TableReader& shape) {
   SphereShape sphere;
   shape.read("center", sphere.center, coordinate);
@@ -55,46 +48,50 @@ Geometry read_mesh(TableReader& shape) {
   return mesh;
 }
 
+/// Any of the parametric shapes that are described by where they stand and how large they are.
+template <typename Shape>
+Geometry read_sized(TableReader& table) {
+  Shape shape;
+  table.read("center", shape.center, coordinate);
+  table.read("size", shape.size, extent);
+  return shape;
+}
+
+void read_placement(TableReader& shape, Placement& placement) {
+  shape.read("scale", placement.scale, closed(1e-6, 1e6));
+  shape.read("rotate", placement.rotate_degrees, closed(-360, 360));
+  shape.read("translate", placement.translate, coordinate);
+}
+
+PartMaterial read_part(TableReader& table, const std::vector<std::string_view>& material_names) {
+  PartMaterial part;
+  table.require("name", "the name of a part of the shape");
+  table.read("name", part.part);
+  table.require("material", "the name of a material");
+  table.read_reference("material", part.material, "material", material_names);
+  return part;
+}
+
 void read_shape(TableReader& table, ShapeDescription& shape,
                 const std::vector<std::string_view>& material_names) {
   Geometry (*read_geometry)(TableReader&) = nullptr;
-  table.require("type", "one of: plane, sphere, shell, mesh");
+  table.require("type", "one of: plane, sphere, shell, jar, spoon, fork, mesh");
   table.read("type", read_geometry,
-             {{"plane", read_plane}, {"sphere", read_sphere}, {"shell", read_shell}, {"mesh", read_mesh}});
+             {{"plane", read_sized<PlaneShape>},
+              {"sphere", read_sphere},
+              {"shell", read_shell},
+              {"jar", read_sized<JarShape>},
+              {"spoon", read_sized<SpoonShape>},
+              {"fork", read_sized<ForkShape>},
+              {"mesh", read_mesh}});
   table.require("material", "the name of a material");
   table.read_reference("material", shape.material, "material", material_names);
+  read_placement(table, shape.placement);
+  if (table.has("parts"))
+    table.read_table_array(
+        "parts", [&](TableReader& part) { shape.parts.push_back(read_part(part, material_names)); });
   if (read_geometry) {
     shape.geometry = read_geometry(table);
-  } else {
-    table.accept_any_key();
-  }
-}
-
-LightDescription read_point(TableReader& light) {
-  PointLight point;
-  light.require("position", "an array of 3 numbers");
-  light.read("position", point.position, coordinate);
-  light.read("intensity", point.intensity, radiance);
-  return point;
-}
-
-LightDescription read_directional(TableReader& light) {
-  DirectionalLight directional;
-  light.require("direction", "an array of 3 numbers");
-  light.read("direction", directional.direction, coordinate);
-  if (directional.direction.norm() < 1e-9) {
-    light.report("direction", "found no length; expected the direction in which the light travels");
-  }
-  light.read("irradiance", directional.irradiance, radiance);
-  return directional;
-}
-
-void read_light(TableReader& table, LightDescription& light) {
-  LightDescription (*read)(TableReader&) = nullptr;
-  table.require("type", "one of: point, directional");
-  table.read("type", read, {{"point", read_point}, {"directional", read_directional}});
-  if (read) {
-    light = read(table);
   } else {
     table.accept_any_key();
   }
@@ -118,7 +115,7 @@ SceneDescription read_scene(TableReader& job, const std::vector<SurfaceDescripti
   for (const MaterialDescription& material : scene.materials) material_names.push_back(material.name);
   job.read_table_array(
       "shape", [&](TableReader& table) { read_shape(table, scene.shapes.emplace_back(), material_names); });
-  job.read_table_array("light", [&](TableReader& table) { read_light(table, scene.lights.emplace_back()); });
+  scene.lights = read_lights(job);
   job.read_table("background", [&](TableReader& table) { read_background(table, scene.background); });
   return scene;
 }

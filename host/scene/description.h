@@ -33,6 +33,12 @@ struct ColorFresnel {
 };
 using Fresnel = std::variant<ConductorFresnel, DielectricFresnel, ColorFresnel>;
 
+/// A clear layer over a material: dielectric, thin beside everything else, itself a little rough.
+struct CoatDescription {
+  double ior = 1.5;
+  double roughness = 0.02;  ///< standard deviation of its own slopes an axis; 1e-3..1
+};
+
 /// `[material.NAME]`
 struct MaterialDescription {
   std::string name;
@@ -41,8 +47,9 @@ struct MaterialDescription {
   std::string ndf = "triangles";  ///< evaluator
   double roughness = 0.01;        ///< sigma_r on the disk
   Fresnel specular = ColorFresnel{};
-  Color diffuse{0, 0, 0};                   ///< Lambertian albedo
-  std::optional<GlintsDescription> glints;  ///< of the evaluator "grid", which needs no surface
+  Color diffuse{0, 0, 0};  ///< Lambertian albedo
+  std::optional<CoatDescription> coat = {};
+  std::optional<GlintsDescription> glints = {};  ///< of the evaluator "grid", which needs no surface
 };
 
 struct PlaneShape {  ///< square of the plane z = height, uv over its sides
@@ -61,10 +68,37 @@ struct ShellShape {  ///< snail shell: a tube along a logarithmic spiral, standi
 struct MeshShape {  ///< Wavefront OBJ with uv
   std::string path;
 };
-/// `[[shape]]`
+struct JarShape {  ///< a round jar with a lid, standing on z = 0; parts "body" and "lid"
+  Eigen::Vector3d center{0, 0, 0};
+  double size = 1;  ///< height with the lid
+};
+struct SpoonShape {  ///< lying on z = 0 along x, its bowl towards +x and open upwards
+  Eigen::Vector3d center{0, 0, 0};
+  double size = 2;  ///< length
+};
+struct ForkShape {  ///< lying on z = 0 along x, its tines towards +x
+  Eigen::Vector3d center{0, 0, 0};
+  double size = 2;  ///< length
+};
+
+/// Where a shape stands: stretched along its own axes, then turned, then moved.
+struct Placement {
+  Eigen::Vector3d scale{1, 1, 1};           ///< above 0
+  Eigen::Vector3d rotate_degrees{0, 0, 0};  ///< about x, then y, then z; counterclockwise seen from its tip
+  Eigen::Vector3d translate{0, 0, 0};
+};
+
+/// Material of one named part of a shape.
+struct PartMaterial {
+  std::string part, material;
+};
+
+/// `[[shape]]`. Shapes of equal geometry share it in memory.
 struct ShapeDescription {
-  std::variant<PlaneShape, SphereShape, ShellShape, MeshShape> geometry;
+  std::variant<PlaneShape, SphereShape, ShellShape, MeshShape, JarShape, SpoonShape, ForkShape> geometry;
   std::string material;
+  Placement placement = {};
+  std::vector<PartMaterial> parts = {};  ///< that have another material than the rest
 };
 
 struct PointLight {
@@ -75,8 +109,19 @@ struct DirectionalLight {
   Eigen::Vector3d direction{0, 0, -1};  ///< in which the light travels
   Color irradiance{3, 3, 3};            ///< W/m^2 on a surface that faces it
 };
+struct SphereLight {  ///< shines alike in all directions
+  Eigen::Vector3d position{0, 0, 4};
+  double radius = 0.2;
+  Color intensity{10, 10, 10};  ///< W/sr
+};
+struct DiskLight {  ///< one-sided, as bright from every angle
+  Eigen::Vector3d position{0, 0, 4};
+  Eigen::Vector3d direction{0, 0, -1};  ///< that it faces
+  double radius = 0.5;
+  Color intensity{10, 10, 10};  ///< W/sr along its direction
+};
 /// `[[light]]`
-using LightDescription = std::variant<PointLight, DirectionalLight>;
+using LightDescription = std::variant<PointLight, DirectionalLight, SphereLight, DiskLight>;
 
 /// What rays that hit nothing see: a colour, or a lat-long image when `path` is not empty.
 struct BackgroundDescription {

@@ -10,8 +10,12 @@
 #include <variant>
 
 #include "host/base/error.h"
+#include "host/scene/fork.h"
+#include "host/scene/jar.h"
 #include "host/scene/obj.h"
+#include "host/scene/placement.h"
 #include "host/scene/shell.h"
+#include "host/scene/spoon.h"
 
 namespace mica {
 namespace {
@@ -51,6 +55,33 @@ struct MakeShape {
   }
   Shape operator()(const ShellShape& shell) const { return make_shell(shell); }
   Shape operator()(const MeshShape& mesh) const { return load_obj(mesh.path); }
+  Shape operator()(const JarShape& jar) const { return make_jar(jar); }
+  Shape operator()(const SpoonShape& spoon) const { return make_spoon(spoon); }
+  Shape operator()(const ForkShape& fork) const { return make_fork(fork); }
+};
+
+/// Whether two descriptions are of the same shape; the visitor knows the first one.
+struct SameShape {
+  const decltype(ShapeDescription::geometry)& other;
+
+  template <class Described>
+  bool operator()(const Described& shape) const {
+    const Described* same_kind = std::get_if<Described>(&other);
+    return same_kind && equal(shape, *same_kind);
+  }
+
+ private:
+  static bool equal(const MeshShape& a, const MeshShape& b) { return a.path == b.path; }
+  static bool equal(const SphereShape& a, const SphereShape& b) {
+    return a.center == b.center && a.radius == b.radius;
+  }
+  static bool equal(const ShellShape& a, const ShellShape& b) {
+    return a.center == b.center && a.size == b.size && a.turns == b.turns;
+  }
+  template <class Described>
+  static bool equal(const Described& a, const Described& b) {
+    return a.center == b.center && a.size == b.size;
+  }
 };
 
 template <class Element>
@@ -121,18 +152,78 @@ struct ExactHit {
   Hit operator()(const TriangleMesh& mesh) const { return hit_triangle(mesh, found.hit.primID, ray); }
 };
 
+/// A shape as it is described, which may stand in several places.
+struct Prototype {
+  Shape shape;
+  GeometryHandle geometry;
+  SceneHandle scene;  ///< of this alone, once it stands somewhere else than described
+};
+
+struct PlacedShape {
+  std::size_t prototype;
+  PlacedFrame frame;
+};
+
+// More threads would order the triangles differently, and the order decides which of two equally near ones
+// is hit.
+void commit(RTCScene scene) {
+  tbb::task_arena(1).execute([&] { rtcJoinCommitScene(scene); });
+}
+
 }  // namespace
 
 struct Geometry::Implementation {
   DeviceHandle device;
   SceneHandle scene;
-  std::vector<Shape> shapes;  ///< by Embree's geomID
+  std::vector<decltype(ShapeDescription::geometry)> descriptions;  ///< of the prototypes
+  std::vector<Prototype> prototypes;
+  std::vector<PlacedShape> placed;  ///< by Embree's geomID, or instID of those that are instances
 
-  void attach(const Shape& shape) {
-    const GeometryHandle geometry = std::visit(MakeEmbreeGeometry{device.get()}, shape);
+  std::size_t prototype_of(const ShapeDescription& description) {
+    const auto found = std::find_if(descriptions.begin(), descriptions.end(), [&](const auto& other) {
+      return std::visit(SameShape{other}, description.geometry);
+    });
+    if (found != descriptions.end()) return static_cast<std::size_t>(found - descriptions.begin());
+    Shape shape = std::visit(MakeShape{}, description.geometry);
+    GeometryHandle geometry = std::visit(MakeEmbreeGeometry{device.get()}, shape);
     rtcCommitGeometry(geometry.get());
-    rtcAttachGeometryByID(scene.get(), geometry.get(), static_cast<unsigned>(shapes.size()));
+    descriptions.push_back(description.geometry);
+    prototypes.push_back({std::move(shape), std::move(geometry), nullptr});
+    return prototypes.size() - 1;
+  }
+
+  SceneHandle new_scene() const {
+    SceneHandle made(rtcNewScene(device.get()));
+    rtcSetSceneFlags(made.get(), RTC_SCENE_FLAG_ROBUST);
+    return made;
+  }
+
+  GeometryHandle instance(Prototype* prototype, const PlacedFrame& frame) const {
+    if (!prototype->scene) {
+      prototype->scene = new_scene();
+      rtcAttachGeometry(prototype->scene.get(), prototype->geometry.get());
+      commit(prototype->scene.get());
+    }
+    GeometryHandle geometry(rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_INSTANCE));
+    rtcSetGeometryInstancedScene(geometry.get(), prototype->scene.get());
+    const Eigen::Matrix<float, 3, 4> matrix = frame.to_scene().matrix().topRows<3>().cast<float>();
+    rtcSetGeometryTransform(geometry.get(), 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, matrix.data());
+    rtcCommitGeometry(geometry.get());
+    return geometry;
+  }
+
+  void add(const ShapeDescription& description) {
+    const std::size_t index = prototype_of(description);
+    Prototype& prototype = prototypes[index];
+    const PlacedFrame frame(description.placement);
+    const auto id = static_cast<unsigned>(placed.size());
+    if (frame.is_identity()) {
+      rtcAttachGeometryByID(scene.get(), prototype.geometry.get(), id);
+    } else {
+      rtcAttachGeometryByID(scene.get(), instance(&prototype, frame).get(), id);
+    }
     check(device.get(), "add a shape");
+    placed.push_back({index, frame});
   }
 };
 
@@ -140,36 +231,43 @@ Geometry::Geometry(const std::vector<ShapeDescription>& shapes) : implementation
   Implementation& self = *implementation_;
   self.device.reset(rtcNewDevice(nullptr));
   if (!self.device) check(nullptr, "start");
-  self.scene.reset(rtcNewScene(self.device.get()));
-  rtcSetSceneFlags(self.scene.get(), RTC_SCENE_FLAG_ROBUST);
-  for (const ShapeDescription& description : shapes) {
-    Shape shape = std::visit(MakeShape{}, description.geometry);
-    self.attach(shape);
-    self.shapes.push_back(std::move(shape));
-  }
-  // More threads would order the triangles differently, and the order decides which of two equally near ones
-  // is hit.
-  tbb::task_arena(1).execute([&] { rtcJoinCommitScene(self.scene.get()); });
+  self.scene = self.new_scene();
+  for (const ShapeDescription& shape : shapes) self.add(shape);
+  commit(self.scene.get());
   check(self.device.get(), "build its hierarchy");
 }
 
 Geometry::~Geometry() = default;
 Geometry::Geometry(Geometry&&) noexcept = default;
 
+const std::vector<std::string>& Geometry::parts(std::size_t shape) const {
+  static const std::vector<std::string> none;
+  const Implementation& self = *implementation_;
+  const auto* mesh = std::get_if<TriangleMesh>(&self.prototypes[self.placed[shape].prototype].shape);
+  return mesh ? mesh->parts : none;
+}
+
 std::optional<Hit> Geometry::intersect(const Ray& ray) const {
+  const Implementation& self = *implementation_;
   RTCRayHit found;
   set_ray(&found.ray, ray.origin, ray.direction, std::numeric_limits<float>::infinity());
   found.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   found.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  rtcIntersect1(implementation_->scene.get(), &context, &found);
+  rtcIntersect1(self.scene.get(), &context, &found);
   if (found.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
 
-  Hit hit = std::visit(ExactHit{ray, found}, implementation_->shapes[found.hit.geomID]);
+  const bool is_instance = found.hit.instID[0] != RTC_INVALID_GEOMETRY_ID;
+  const unsigned index = is_instance ? found.hit.instID[0] : found.hit.geomID;
+  const PlacedShape& placed = self.placed[index];
+  const Shape& shape = self.prototypes[placed.prototype].shape;
+  const Ray local = is_instance ? placed.frame.to_shape(ray) : ray;
+  Hit hit = std::visit(ExactHit{local, found}, shape);
   // Exactly edge-on there is no point to name.
   if (!hit.position.allFinite() || !hit.face_normal.allFinite()) return std::nullopt;
-  hit.shape = found.hit.geomID;
+  if (is_instance) hit = placed.frame.to_scene(hit);
+  hit.shape = index;
   return hit;
 }
 

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "host/scene/description.h"
@@ -10,12 +11,16 @@
 namespace mica {
 
 /// All shapes of a scene, ready to be hit. Immutable after construction; used from any number of threads.
+/// Shapes whose descriptions differ in nothing but their placement and materials are built once.
 class Geometry {
  public:
   /// Throws FileError for a mesh that cannot be used, UsageError for a shape without extent.
   explicit Geometry(const std::vector<ShapeDescription>& shapes);
   ~Geometry();
   Geometry(Geometry&&) noexcept;
+
+  /// Names of the parts of shape `shape`; none when it is all one.
+  const std::vector<std::string>& parts(std::size_t shape) const;
 
   /// The first hit at t > 0.
   std::optional<Hit> intersect(const Ray& ray) const;

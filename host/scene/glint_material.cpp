@@ -114,16 +114,24 @@ void GlintMaterial::split_by_plane(const CameraRay& ray, const Hit& hit, const T
 }
 
 Color GlintMaterial::weight(const Hit& hit, const GlintPlace& place, const TangentFrame& frame,
-                            const Eigen::Vector3d& to_eye, const Eigen::Vector3d& to_light) const {
+                            const Eigen::Vector3d& to_eye, const LobesSeen& seen,
+                            const Eigen::Vector3d& to_light) const {
   const auto in_frame = [&](const Eigen::Vector3d& omega) {
     return Eigen::Vector3d(omega.dot(frame.x), omega.dot(frame.y), omega.dot(frame.z));
   };
-  const Eigen::Vector2d alpha(place.point.alpha_x, place.point.alpha_y);
-  const double G = glint_masking(glints_, alpha, in_frame(to_eye), in_frame(to_light));
-  const Eigen::Vector3d half = (to_eye + to_light).normalized();
-  const Color reflected =
-      reflectance(material_.specular, to_light.dot(half)) * (G / (4 * to_eye.dot(frame.z)));
+  Color reflected = seen.glint_weight;
+  if (!material_.coat) {
+    const Eigen::Vector2d alpha(place.point.alpha_x, place.point.alpha_y);
+    const double G = glint_masking(glints_, alpha, in_frame(to_eye), in_frame(to_light));
+    reflected =
+        reflectance(material_.specular, to_light.dot(seen.half_vector)) * (G / (4 * to_eye.dot(frame.z)));
+  }
   return color_ ? reflected.cwiseProduct(color_->at(hit.uv).cwiseMax(0).cwiseMin(1)) : reflected;
+}
+
+double GlintMaterial::microroughness(const GlintPlace& place, const LobesSeen& seen) const {
+  const double widened = seen.roughness * seen.roughness - material_.roughness * material_.roughness;
+  return std::min(std::sqrt(place.microroughness * place.microroughness + std::max(widened, 0.0)), 1.0);
 }
 
 }  // namespace mica

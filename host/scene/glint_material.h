@@ -7,6 +7,7 @@
 #include "host/base/query.h"
 #include "host/scene/camera.h"
 #include "host/scene/description.h"
+#include "host/scene/lobes.h"
 #include "host/scene/shading.h"
 #include "host/scene/texture.h"
 
@@ -34,10 +35,15 @@ class GlintMaterial {
   std::vector<GlintPlace> places(const CameraRay& ray, const Hit& hit, const TangentFrame& frame,
                                  double sigma_pixels) const;
 
-  /// f_r max(i.n, 0) / D: Fresnel, masking and the texture of the reflection's colour.
-  /// @param place any of those of `hit`.
+  /// What D is multiplied with, besides the light's irradiance: Fresnel, masking and the texture of the
+  /// reflection's colour.
+  /// @param place any of those of `hit`; @param seen by the eye from the light, whose weight stands for
+  /// glints below a coat.
   Color weight(const Hit& hit, const GlintPlace& place, const TangentFrame& frame,
-               const Eigen::Vector3d& to_eye, const Eigen::Vector3d& to_light) const;
+               const Eigen::Vector3d& to_eye, const LobesSeen& seen, const Eigen::Vector3d& to_light) const;
+
+  /// Of a query, with the light's extent.
+  double microroughness(const GlintPlace& place, const LobesSeen& seen) const;
 
  private:
   void split_by_stretch(const Eigen::Vector2d& uv, std::vector<GlintPlace>* places) const;

@@ -83,6 +83,7 @@ Hit hit_triangle(const TriangleMesh& mesh, std::uint32_t triangle, const Ray& ra
   const double c = std::clamp(q.dot(ray.direction) / determinant, 0.0, 1 - b);
 
   Hit hit;
+  hit.part = mesh.part(triangle);
   hit.t = q.dot(edge_c) / determinant;
   hit.position = a + b * edge_b + c * edge_c;
   hit.error =

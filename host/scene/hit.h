@@ -25,6 +25,7 @@ struct Hit {
   Eigen::Vector3d dpdu, dpdv;   ///< zero where uv is degenerate
   Eigen::Vector2d uv;           ///< of the shape, before the material's repeat
   std::uint32_t shape = 0;      ///< index into SceneDescription::shapes
+  std::uint32_t part = 0;       ///< of the shape, by Geometry::parts
 };
 
 // The exact point at which a ray meets a shape that single precision has already found to be the first:

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace mica {
@@ -14,6 +15,12 @@ struct TriangleMesh {
   std::vector<Eigen::Vector2d> uvs;
   std::vector<Eigen::Vector3f> tangents;  ///< towards +u; of any length, zero where uv has no direction
   std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<std::string> parts;               ///< names, in the order of their first triangles
+  std::vector<std::uint32_t> part_of_triangle;  ///< empty when there is one part at most
+
+  std::uint32_t part(std::uint32_t triangle) const {
+    return part_of_triangle.empty() ? 0 : part_of_triangle[triangle];
+  }
 };
 
 /// Position derivatives of one triangle, on which uv is linear; zero where uv is degenerate.

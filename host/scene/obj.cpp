@@ -47,6 +47,7 @@ class ObjReader {
     }
     if (stream.bad()) throw FileError(fmt::format("{}: cannot read: {}", path_, std::strerror(errno)));
     if (mesh_.triangles.empty()) throw FileError(fmt::format("{}: holds no faces", path_));
+    if (mesh_.parts.size() == 1) mesh_.part_of_triangle.clear();
     set_tangents(&mesh_);
     return std::move(mesh_);
   }
@@ -71,7 +72,7 @@ class ObjReader {
   void read_statement(std::string_view line) {
     const std::vector<std::string_view> word = words(line);
     if (word.empty()) return;
-    constexpr std::string_view passed_over[] = {"g", "o", "s", "l", "p", "usemtl", "mtllib"};
+    constexpr std::string_view passed_over[] = {"g", "o", "s", "l", "p", "mtllib"};
     if (word[0] == "v")
       positions_.push_back(read_vector<3>(word));
     else if (word[0] == "vt")
@@ -80,8 +81,23 @@ class ObjReader {
       normals_.push_back(read_vector<3>(word));
     else if (word[0] == "f")
       read_face(word);
+    else if (word[0] == "usemtl")
+      use_material(word);
     else if (std::find(std::begin(passed_over), std::end(passed_over), word[0]) == std::end(passed_over))
       fail(fmt::format("found the statement '{}', expected v, vt, vn or f", word[0]));
+  }
+
+  void use_material(const std::vector<std::string_view>& word) {
+    if (word.size() != 2) fail(fmt::format("found {} names after 'usemtl', expected 1", word.size() - 1));
+    material_ = std::string(word[1]);
+  }
+
+  /// Index of the part that faces now belong to.
+  std::uint32_t part() {
+    const auto found = std::find(mesh_.parts.begin(), mesh_.parts.end(), material_);
+    const auto index = static_cast<std::uint32_t>(found - mesh_.parts.begin());
+    if (found == mesh_.parts.end()) mesh_.parts.push_back(material_);
+    return index;
   }
 
   /// The first `size` numbers; OBJ allows more (weights, colours), which say nothing here.
@@ -152,6 +168,7 @@ class ObjReader {
       mesh_.triangles.push_back({vertex(corners[0], normal, mirrored),
                                  vertex(corners[i - 1], normal, mirrored),
                                  vertex(corners[i], normal, mirrored)});
+    mesh_.part_of_triangle.resize(mesh_.triangles.size(), part());
   }
 
   /// Newell's: twice the area, along the normal.
@@ -203,6 +220,7 @@ class ObjReader {
 
   std::string path_;
   std::size_t line_ = 0;
+  std::string material_;  ///< that `usemtl` named last
   std::vector<Vector3> positions_, normals_;
   std::vector<Vector2> uvs_;
   std::map<std::tuple<std::size_t, std::size_t, long long, bool>, std::uint32_t> vertices_;

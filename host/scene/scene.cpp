@@ -1,6 +1,7 @@
 #include "host/scene/scene.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -11,15 +12,16 @@
 #include "host/base/error.h"
 #include "host/scene/background.h"
 #include "host/scene/camera.h"
+#include "host/scene/coat.h"
 #include "host/scene/footprint.h"
 #include "host/scene/geometry.h"
 #include "host/scene/glint_material.h"
+#include "host/scene/lobes.h"
 #include "host/scene/shading.h"
 
 namespace mica {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 constexpr double default_masking_alpha = 0.1;
 constexpr double filter_sigma_subpixels = 0.5;
 
@@ -29,17 +31,35 @@ Eigen::Vector2d wrap(const Eigen::Vector2d& uv) {
   return (wrapped.array() < 1).select(wrapped, 0);
 }
 
-std::vector<std::uint32_t> materials_of_shapes(const SceneDescription& description) {
-  std::vector<std::uint32_t> indices;
-  for (const ShapeDescription& shape : description.shapes) {
-    const auto found = std::find_if(description.materials.begin(), description.materials.end(),
-                                    [&](const MaterialDescription& m) { return m.name == shape.material; });
-    if (found == description.materials.end())
-      throw UsageError(
-          fmt::format("shape {}: there is no material '{}'", indices.size() + 1, shape.material));
-    indices.push_back(static_cast<std::uint32_t>(found - description.materials.begin()));
+std::uint32_t material_index(const SceneDescription& description, std::size_t shape,
+                             const std::string& name) {
+  const auto found = std::find_if(description.materials.begin(), description.materials.end(),
+                                  [&](const MaterialDescription& m) { return m.name == name; });
+  if (found == description.materials.end())
+    throw UsageError(fmt::format("shape {}: there is no material '{}'", shape + 1, name));
+  return static_cast<std::uint32_t>(found - description.materials.begin());
+}
+
+/// Indices of the materials of each shape's parts.
+using PartMaterials = std::vector<std::vector<std::uint32_t>>;
+
+PartMaterials materials_of_parts(const SceneDescription& description, const Geometry& geometry) {
+  PartMaterials materials;
+  for (std::size_t n = 0; n < description.shapes.size(); ++n) {
+    const ShapeDescription& shape = description.shapes[n];
+    const std::vector<std::string>& parts = geometry.parts(n);
+    materials.emplace_back(std::max<std::size_t>(parts.size(), 1),
+                           material_index(description, n, shape.material));
+    for (const PartMaterial& wanted : shape.parts) {
+      const auto part = std::find(parts.begin(), parts.end(), wanted.part);
+      if (part == parts.end())
+        throw UsageError(fmt::format("shape {}: found no part '{}'; its parts are: {}", n + 1, wanted.part,
+                                     parts.empty() ? "none" : fmt::format("{}", fmt::join(parts, ", "))));
+      materials[n][static_cast<std::size_t>(part - parts.begin())] =
+          material_index(description, n, wanted.material);
+    }
   }
-  return indices;
+  return materials;
 }
 
 struct IsUsableLight {
@@ -50,15 +70,39 @@ struct IsUsableLight {
     return light.direction.allFinite() && light.direction.norm() > 0 && light.irradiance.allFinite() &&
            light.irradiance.minCoeff() >= 0;
   }
+  bool operator()(const SphereLight& light) const {
+    return (*this)(PointLight{light.position, light.intensity}) && std::isfinite(light.radius) &&
+           light.radius >= 0;
+  }
+  bool operator()(const DiskLight& light) const {
+    return (*this)(SphereLight{light.position, light.radius, light.intensity}) &&
+           light.direction.allFinite() && light.direction.norm() > 0;
+  }
 };
 
-/// Of all materials that a shape has and that are made of glints without a map.
-std::vector<std::optional<GlintMaterial>> glint_materials(const std::vector<MaterialDescription>& materials,
-                                                          const std::vector<std::uint32_t>& shape_material) {
-  std::vector<std::optional<GlintMaterial>> glints(materials.size());
-  for (const std::uint32_t n : shape_material)
-    if (materials[n].glints && !glints[n]) glints[n].emplace(materials[n]);
-  return glints;
+void check_lights(const std::vector<LightDescription>& lights) {
+  for (std::size_t i = 0; i < lights.size(); ++i)
+    if (!std::visit(IsUsableLight{}, lights[i]))
+      throw UsageError(fmt::format("light {}: expected finite values and no negative power", i + 1));
+}
+
+void complete(std::vector<double>* masking_alpha, std::size_t materials) {
+  for (const double alpha : *masking_alpha)
+    if (!(alpha >= 0 && std::isfinite(alpha))) throw UsageError(fmt::format("masking alpha of {}", alpha));
+  masking_alpha->resize(materials, default_masking_alpha);
+}
+
+/// Where on a light the shadow ray of a subpixel ends: all subpixels of a pixel cover the light evenly, in an
+/// order of the pixel's own, so that penumbras have no bands.
+Eigen::Vector2d shadow_sample(std::uint64_t pixel, int subpixel, int subpixels) {
+  std::uint64_t hash = (pixel + 1) * 0x9e3779b97f4a7c15u;  // SplitMix64
+  hash = (hash ^ (hash >> 30)) * 0xbf58476d1ce4e5b9u;
+  hash = (hash ^ (hash >> 27)) * 0x94d049bb133111ebu;
+  hash ^= hash >> 31;
+  const double step = 1.0 / subpixels, unit = 1.0 / 4294967296.0;
+  const Eigen::Vector2d shift(unit * static_cast<double>(hash >> 32),
+                              unit * static_cast<double>(hash & 0xffffffffu));
+  return wrap(step * Eigen::Vector2d(subpixel % subpixels, subpixel / subpixels) + shift);
 }
 
 /// Sums of one pixel's AOVs over the subpixels that hit a shape.
@@ -99,20 +143,50 @@ TracedRows empty_rows(int first_row, int row_count, int width) {
 
 }  // namespace
 
-struct Scene::Implementation {
-  PinholeCamera camera;
+namespace {
+
+/// What does not change from frame to frame.
+struct StaticScene {
   Geometry geometry;
   Background background;
   std::vector<MaterialDescription> materials;
-  std::vector<std::optional<GlintMaterial>> glints;  ///< of each material
-  std::vector<double> masking_alpha;                 ///< of each material
-  std::vector<std::uint32_t> shape_material;         ///< index of each shape's material
+  std::vector<std::optional<CoatInterface>> coats;  ///< of each material
+  PartMaterials part_materials;
+  std::vector<std::optional<GlintMaterial>> glints;  ///< of each material that a shape has
+};
+
+StaticScene make_static_scene(const SceneDescription& description) {
+  StaticScene made{
+      Geometry(description.shapes), Background(description.background), description.materials, {}, {}, {}};
+  for (const MaterialDescription& material : description.materials)
+    made.coats.push_back(material.coat ? std::optional<CoatInterface>(*material.coat) : std::nullopt);
+  made.part_materials = materials_of_parts(description, made.geometry);
+  made.glints.resize(description.materials.size());
+  for (const auto& parts : made.part_materials)
+    for (const std::uint32_t n : parts)
+      if (description.materials[n].glints && !made.glints[n])
+        made.glints[n].emplace(description.materials[n]);
+  return made;
+}
+
+/// One of a pixel's footprints.
+struct Subpixel {
+  std::uint32_t pixel;           ///< from the first traced row
+  Eigen::Vector2d light_sample;  ///< of shadow rays, see light_ray
+};
+
+}  // namespace
+
+struct Scene::Implementation {
+  std::shared_ptr<const StaticScene> shared;
+  PinholeCamera camera;
+  std::vector<double> masking_alpha;  ///< of each material
   std::vector<LightDescription> lights;
   int width, height, subpixels;
 
   /// Fills pixels [row * width, (row + 1) * width) of `rows`, and `queries`.
   void trace_row(int row, TracedRows* rows, std::vector<GlintQuery>* queries) const;
-  Color shade(const CameraRay& ray, const Hit& hit, std::uint32_t pixel, PixelMeans* means,
+  Color shade(const CameraRay& ray, const Hit& hit, const Subpixel& subpixel, PixelMeans* means,
               std::vector<GlintQuery>* queries) const;
 };
 
@@ -121,72 +195,81 @@ Scene::Scene(const SceneDescription& description, int width, int height, int sub
   if (width < 1 || height < 1) throw UsageError(fmt::format("image of {} x {} pixels", width, height));
   if (subpixels < 1 || subpixels > 16)
     throw UsageError(fmt::format("subpixels: found {}, expected 1 to 16", subpixels));
-  for (const double alpha : masking_alpha)
-    if (!(alpha >= 0 && std::isfinite(alpha))) throw UsageError(fmt::format("masking alpha of {}", alpha));
-  for (std::size_t i = 0; i < description.lights.size(); ++i)
-    if (!std::visit(IsUsableLight{}, description.lights[i]))
-      throw UsageError(fmt::format("light {}: expected finite values and no negative power", i + 1));
-  masking_alpha.resize(description.materials.size(), default_masking_alpha);
-
-  std::vector<std::uint32_t> shape_material = materials_of_shapes(description);
+  complete(&masking_alpha, description.materials.size());
+  check_lights(description.lights);
+  const PinholeCamera camera(description.camera, width, height);
   implementation_.reset(
-      new Implementation{PinholeCamera(description.camera, width, height), Geometry(description.shapes),
-                         Background(description.background), description.materials,
-                         glint_materials(description.materials, shape_material), std::move(masking_alpha),
-                         std::move(shape_material), description.lights, width, height, subpixels});
+      new Implementation{std::make_shared<const StaticScene>(make_static_scene(description)), camera,
+                         std::move(masking_alpha), description.lights, width, height, subpixels});
 }
+
+Scene::Scene(std::unique_ptr<Implementation> implementation) : implementation_(std::move(implementation)) {}
 
 Scene::~Scene() = default;
 Scene::Scene(Scene&&) noexcept = default;
 
-Color Scene::Implementation::shade(const CameraRay& ray, const Hit& hit, std::uint32_t pixel,
+Scene Scene::with_view(const CameraDescription& camera, const std::vector<LightDescription>& lights,
+                       const std::vector<double>& masking_alpha) const {
+  const Implementation& self = *implementation_;
+  std::vector<double> alphas = masking_alpha;
+  complete(&alphas, self.shared->materials.size());
+  check_lights(lights);
+  return Scene(std::unique_ptr<Implementation>(
+      new Implementation{self.shared, PinholeCamera(camera, self.width, self.height), std::move(alphas),
+                         lights, self.width, self.height, self.subpixels}));
+}
+
+Color Scene::Implementation::shade(const CameraRay& ray, const Hit& hit, const Subpixel& subpixel,
                                    PixelMeans* means, std::vector<GlintQuery>* queries) const {
-  const std::uint32_t material_index = shape_material[hit.shape];
-  const MaterialDescription& material = materials[material_index];
+  const std::uint32_t material_index = shared->part_materials[hit.shape][hit.part];
+  const MaterialDescription& material = shared->materials[material_index];
+  const std::optional<CoatInterface>& coat = shared->coats[material_index];
   const Eigen::Vector3d to_eye = -ray.direction.normalized();
   const TangentFrame frame = tangent_frame(hit, to_eye);
   const Eigen::Matrix2d duv = material.repeat.asDiagonal() * uv_differentials(ray, hit);
+  const double alpha = masking_alpha[material_index];
 
   GlintQuery query;
   query.query.footprint.mean_uv = wrap(hit.uv.cwiseProduct(material.repeat));
   query.query.footprint.cov_uv = footprint_covariance(duv, filter_sigma_subpixels / subpixels);
-  query.query.roughness = material.roughness;
-  query.pixel = pixel;
+  query.pixel = subpixel.pixel;
   query.material = material_index;
   means->add(query.query.footprint, frame.z);
-  Color diffuse = Color::Zero();
-  if (frame.face_normal.dot(to_eye) < min_cosine) return diffuse;
-  const GlintMaterial* glint_material = glints[material_index] ? &*glints[material_index] : nullptr;
+  Color smooth = Color::Zero();  // what needs no P-NDF
+  if (frame.face_normal.dot(to_eye) < min_cosine) return smooth;
+  const std::optional<GlintMaterial>& glints = shared->glints[material_index];
   std::vector<GlintPlace> places = {{query.query.footprint, frame.x, frame.y, material.roughness, {}}};
-  if (glint_material) places = glint_material->places(ray, hit, frame, filter_sigma_subpixels / subpixels);
+  if (glints) places = glints->places(ray, hit, frame, filter_sigma_subpixels / subpixels);
 
   for (const LightDescription& light : lights) {
     const Illumination incident = illuminate(light, hit.position);
+    if (!(incident.irradiance.maxCoeff() > 0)) continue;
     const double cos_i = incident.direction.dot(frame.z);
     if (cos_i < min_cosine || incident.direction.dot(frame.face_normal) < min_cosine) continue;
-    if (geometry.occluded(hit, incident.direction, incident.distance)) continue;
-    diffuse += (material.diffuse / pi * cos_i).cwiseProduct(incident.irradiance);
+    const LightRay to_light = light_ray(light, hit.position, subpixel.light_sample);
+    if (to_light.direction.dot(frame.face_normal) < min_cosine) continue;
+    if (shared->geometry.occluded(hit, to_light.direction, to_light.distance)) continue;
 
-    const Color weight = glint_material
-                             ? glint_material->weight(hit, places.front(), frame, to_eye, incident.direction)
-                             : glint_weight(material.specular, masking_alpha[material_index], frame.z, to_eye,
-                                            incident.direction);
+    const LobesSeen seen = see_lobes(material, coat, alpha, frame.z, to_eye, incident);
+    smooth += seen.smooth.cwiseProduct(incident.irradiance);
+    const Color weight = glints ? glints->weight(hit, places.front(), frame, to_eye, seen, incident.direction)
+                                : seen.glint_weight;
     query.weight = weight.cwiseProduct(incident.irradiance / (subpixels * subpixels)).cast<float>();
     if (!(query.weight.maxCoeff() > 0)) continue;
-    const Eigen::Vector3d half = (to_eye + incident.direction).normalized();
     for (const GlintPlace& place : places) {
       query.query.footprint = place.footprint;
-      query.query.half_vector = {half.dot(place.x), half.dot(place.y)};
-      query.query.roughness = place.microroughness;
+      query.query.half_vector = {seen.half_vector.dot(place.x), seen.half_vector.dot(place.y)};
+      query.query.roughness = glints ? glints->microroughness(place, seen) : seen.roughness;
       query.glints = place.point;
       queries->push_back(query);
     }
   }
-  return diffuse;
+  return smooth;
 }
 
 void Scene::Implementation::trace_row(int row, TracedRows* rows, std::vector<GlintQuery>* queries) const {
   const double step = 1.0 / subpixels;
+  const auto first_pixel = static_cast<std::uint64_t>(rows->first_row) * static_cast<std::uint64_t>(width);
   for (int column = 0; column < width; ++column) {
     const std::size_t pixel =
         static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(column);
@@ -198,9 +281,10 @@ void Scene::Implementation::trace_row(int row, TracedRows* rows, std::vector<Gli
       const double x = column + (i + 0.5) * step;
       const double y = rows->first_row + row + (j + 0.5) * step;
       const CameraRay ray = camera.ray(x, y);
-      const std::optional<Hit> hit = geometry.intersect({ray.origin, ray.direction});
-      radiance += hit ? shade(ray, *hit, static_cast<std::uint32_t>(pixel), &means, queries)
-                      : background.radiance(ray.direction);
+      const std::optional<Hit> hit = shared->geometry.intersect({ray.origin, ray.direction});
+      const Subpixel here{static_cast<std::uint32_t>(pixel),
+                          shadow_sample(first_pixel + pixel, subpixel, subpixels)};
+      radiance += hit ? shade(ray, *hit, here, &means, queries) : shared->background.radiance(ray.direction);
     }
     rows->radiance[pixel] = (radiance * step * step).cast<float>();
     rows->query_count[pixel] =

@@ -50,12 +50,17 @@ class Scene {
   ~Scene();
   Scene(Scene&&) noexcept;
 
+  /// The same shapes and background from another camera under other lights; they are shared, not built again.
+  Scene with_view(const CameraDescription& camera, const std::vector<LightDescription>& lights,
+                  const std::vector<double>& masking_alpha) const;
+
   /// Traces rows [first_row, first_row + row_count). The result depends on nothing but the scene and the
   /// rows. Throws UsageError for rows outside the image.
   TracedRows trace(int first_row, int row_count) const;
 
  private:
   struct Implementation;
+  explicit Scene(std::unique_ptr<Implementation> implementation);
   std::unique_ptr<Implementation> implementation_;
 };
 

@@ -1,6 +1,8 @@
 #include "host/scene/shading.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "host/scene/fresnel.h"
@@ -21,6 +23,63 @@ struct Illuminate {
   }
   Illumination operator()(const DirectionalLight& light) const {
     return {-light.direction.normalized(), std::numeric_limits<double>::infinity(), light.irradiance};
+  }
+  Illumination operator()(const SphereLight& light) const {
+    Illumination seen = (*this)(PointLight{light.position, light.intensity});
+    if (seen.distance <= light.radius) return {seen.direction, 0, Color::Zero()};  // inside it
+    // A disk of angular radius a has a variance of a^2 / 4 an axis.
+    const double sine = light.radius / seen.distance;
+    seen.variance = sine * sine / 4;
+    seen.distance -= light.radius;
+    return seen;
+  }
+  Illumination operator()(const DiskLight& light) const {
+    Illumination seen = (*this)(PointLight{light.position, light.intensity});
+    const double cosine = std::max(0.0, -seen.direction.dot(light.direction.normalized()));
+    // Foreshortened along one axis: the mean of both. Near by it fills no more than the sky.
+    const double tangent2 = light.radius * light.radius / (seen.distance * seen.distance);
+    seen.variance = tangent2 / (1 + tangent2) / 4 * (1 + cosine * cosine) / 2;
+    seen.irradiance *= cosine;
+    return seen;
+  }
+};
+
+/// Uniform on the unit disk, from the unit square. [Shirley97]: Peter Shirley and Kenneth Chiu, "A Low
+/// Distortion Map Between Disk and Square", Journal of Graphics Tools 2(3), 1997.
+Eigen::Vector2d on_unit_disk(const Eigen::Vector2d& sample) {
+  constexpr double quarter = 3.14159265358979323846 / 4;
+  const double x = 2 * sample.x() - 1, y = 2 * sample.y() - 1;
+  if (x == 0 && y == 0) return {0, 0};
+  const bool wide = std::abs(x) > std::abs(y);
+  const double radius = wide ? x : y, angle = wide ? quarter * y / x : 2 * quarter - quarter * x / y;
+  return {radius * std::cos(angle), radius * std::sin(angle)};
+}
+
+struct MakeLightRay {
+  const Eigen::Vector3d& position;
+  const Eigen::Vector2d& sample;
+
+  LightRay operator()(const PointLight& light) const { return towards(light.position); }
+  LightRay operator()(const DirectionalLight& light) const {
+    return {-light.direction.normalized(), std::numeric_limits<double>::infinity()};
+  }
+  /// To the disk that is the sphere's outline.
+  LightRay operator()(const SphereLight& light) const {
+    return towards_disk(light.position, light.position - position, light.radius);
+  }
+  LightRay operator()(const DiskLight& light) const {
+    return towards_disk(light.position, light.direction, light.radius);
+  }
+
+ private:
+  LightRay towards_disk(const Eigen::Vector3d& center, const Eigen::Vector3d& axis, double radius) const {
+    const Eigen::Vector3d z = axis.normalized(), x = z.unitOrthogonal(), y = z.cross(x);
+    const Eigen::Vector2d offset = radius * on_unit_disk(sample);
+    return towards(center + offset.x() * x + offset.y() * y);
+  }
+  LightRay towards(const Eigen::Vector3d& point) const {
+    const Eigen::Vector3d to_light = point - position;
+    return {to_light.stableNormalized(), to_light.norm()};
   }
 };
 
@@ -43,6 +102,17 @@ TangentFrame tangent_frame(const Hit& hit, const Eigen::Vector3d& to_eye) {
 
 Illumination illuminate(const LightDescription& light, const Eigen::Vector3d& position) {
   return std::visit(Illuminate{position}, light);
+}
+
+LightRay light_ray(const LightDescription& light, const Eigen::Vector3d& position,
+                   const Eigen::Vector2d& sample) {
+  return std::visit(MakeLightRay{position, sample}, light);
+}
+
+double half_vector_variance(double light_variance, double cos_d) {
+  constexpr double least_cosine = 0.1;  // beyond it the spread is no longer small
+  const double across = 1 / std::max(cos_d, least_cosine);
+  return light_variance / 4 * (1 + across * across) / 2;
 }
 
 Color glint_weight(const Fresnel& fresnel, double masking_alpha, const Eigen::Vector3d& n,

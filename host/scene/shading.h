@@ -24,11 +24,29 @@ TangentFrame tangent_frame(const Hit& hit, const Eigen::Vector3d& to_eye);
 
 /// Light that arrives at a point from one light, before any shadow.
 struct Illumination {
-  Eigen::Vector3d direction;  ///< towards the light; unit
+  Eigen::Vector3d direction;  ///< towards the light's middle; unit
   double distance;            ///< to the light; infinite for directional ones
   Color irradiance;           ///< on a surface that faces the light
+  double variance = 0;        ///< of the directions in which the light is seen, an axis, radians^2
 };
 Illumination illuminate(const LightDescription& light, const Eigen::Vector3d& position);
+
+/// Where a shadow ray goes: to a point of the light that `sample`, uniform on the unit square, chooses. For
+/// lights without extent, to their middle.
+struct LightRay {
+  Eigen::Vector3d direction;  ///< unit
+  double distance;
+};
+LightRay light_ray(const LightDescription& light, const Eigen::Vector3d& position,
+                   const Eigen::Vector2d& sample);
+
+/// By how much a light's extent spreads the half vector on the disk, an axis: what it adds to the square of a
+/// query's roughness.
+///
+/// The half vector turns half as far as the light in the plane of both directions, and 1 / (2 cos_d) as far
+/// across it; a Gaussian of the mean of both variances stands for the light's disk.
+/// @param cos_d cosine between light and half vector.
+double half_vector_variance(double light_variance, double cos_d);
 
 /// f_r max(i.n, 0) / D, [Yan14] Eq. 1: what a P-NDF's value is multiplied with, besides the irradiance of the
 /// light.

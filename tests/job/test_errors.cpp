@@ -46,7 +46,7 @@ const std::vector<Mistake> unknown_keys = {
     {"\"bumps\"", "\"bumps\"\n@\"a b\" = 1",
      "material.gold.\"a b\": found an unknown key; expected one of: surface, repeat, ndf, roughness, "
      "specular, "
-     "diffuse"},
+     "diffuse, coat"},
 };
 INSTANTIATE_TEST_SUITE_P(UnknownKey, Errors, testing::ValuesIn(unknown_keys));
 
@@ -71,7 +71,7 @@ const std::vector<Mistake> wrong_types = {
      "queries"},
     {"\"bumps\"", "@[\"bumps\"]",
      "material.gold.surface: found an array; expected a string that is not empty"},
-    {"\"sphere\"", "@1", "shape.0.type: found 1; expected one of: plane, sphere, shell, mesh"},
+    {"\"sphere\"", "@1", "shape.0.type: found 1; expected one of: plane, sphere, shell, jar, spoon, fork, mesh"},
     {"[surface.bumps]", "[surface]\nextra = @1\n[surface.bumps]",
      "surface.extra: found 1; expected a table, headed [surface.NAME]"},
     {"[[light]]", "@[light]", "light: found a table; expected an array of tables, each headed [[light]]"},
@@ -85,13 +85,13 @@ const std::vector<Mistake> missing_keys = {
     {"[material.gold]\nsurface = \"bumps\"", "@[material.gold]",
      "material.gold: found no key \"surface\"; expected the name of a surface"},
     {"[[shape]]\ntype = \"sphere\"", "@[[shape]]",
-     "shape.0: found no key \"type\"; expected one of: plane, sphere, shell, mesh"},
+     "shape.0: found no key \"type\"; expected one of: plane, sphere, shell, jar, spoon, fork, mesh"},
     {"[[shape]]\ntype = \"sphere\"\nmaterial = \"gold\"", "@[[shape]]\ntype = \"sphere\"",
      "shape.0: found no key \"material\"; expected the name of a material"},
     {"[[shape]]\ntype = \"sphere\"", "@[[shape]]\ntype = \"mesh\"",
      "shape.0: found no key \"file\"; expected a Wavefront OBJ file"},
     {"[[light]]\ntype = \"point\"", "@[[light]]",
-     "light.0: found no key \"type\"; expected one of: point, directional"},
+     "light.0: found no key \"type\"; expected one of: point, directional, sphere, disk"},
     {"[[light]]\ntype = \"point\"\nposition = [0, 0, 4]", "@[[light]]\ntype = \"point\"",
      "light.0: found no key \"position\"; expected an array of 3 numbers"},
     {"[[light]]\ntype = \"point\"\nposition = [0, 0, 4]", "@[[light]]\ntype = \"directional\"",

@@ -49,6 +49,16 @@ TEST_F(Obj, ReadsTrianglesWithEverything) {
   EXPECT_TRUE(mesh.tangents[0].normalized().isApprox(Vector3f(1, 0, 0)));
 }
 
+TEST_F(Obj, MaterialsAreParts) {
+  const TriangleMesh mesh = load(square +
+                                 "f 1/1 2/2 3/3\nusemtl lid\nf 1/1 3/3 4/4\nusemtl body\nf 1/1 2/2 3/3 "
+                                 "4/4\nusemtl lid\nf 2/2 3/3 4/4\n");
+  EXPECT_EQ(mesh.parts, (std::vector<std::string>{"", "lid", "body"}));
+  EXPECT_EQ(mesh.part_of_triangle, (std::vector<std::uint32_t>{0, 1, 2, 2, 1}));
+  EXPECT_EQ(load(square + "usemtl all\nf 1/1 2/2 3/3\n").parts, (std::vector<std::string>{"all"}));
+  EXPECT_EQ(error_of("usemtl\n").rfind("1: found 0 names", 0), 0u);
+}
+
 TEST_F(Obj, NegativeIndicesCountBack) {
   const TriangleMesh forward = load(square + "vn 0 0 1\nf 1/1/1 2/2/1 3/3/1\n");
   const TriangleMesh back = load(square + "vn 0 0 1\nf -4/-4/-1 -3/-3/-1 -2/-2/-1\n");

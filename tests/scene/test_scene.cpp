@@ -22,8 +22,7 @@ using Eigen::Vector3f;
 
 constexpr double pi = 3.14159265358979323846;
 
-SceneDescription with_shapes(
-    const std::vector<std::variant<PlaneShape, SphereShape, ShellShape, MeshShape>>& shapes) {
+SceneDescription with_shapes(const std::vector<decltype(ShapeDescription::geometry)>& shapes) {
   SceneDescription description;
   MaterialDescription material;
   material.name = "m";

@@ -1,0 +1,47 @@
+#include "host/scene/placement.h"
+
+#include "host/base/error.h"
+
+namespace mica {
+namespace {
+
+constexpr double degree = 3.14159265358979323846 / 180;
+constexpr double relative_error = 4e-6;  // of single precision, see hit.cpp
+
+Eigen::Affine3d transform_of(const Placement& placement) {
+  const Eigen::Vector3d angles = degree * placement.rotate_degrees;
+  return Eigen::Translation3d(placement.translate) * Eigen::AngleAxisd(angles.z(), Eigen::Vector3d::UnitZ()) *
+         Eigen::AngleAxisd(angles.y(), Eigen::Vector3d::UnitY()) *
+         Eigen::AngleAxisd(angles.x(), Eigen::Vector3d::UnitX()) * Eigen::Scaling(placement.scale);
+}
+
+}  // namespace
+
+PlacedFrame::PlacedFrame(const Placement& placement)
+    : is_identity_(placement.scale == Eigen::Vector3d::Ones() && placement.rotate_degrees.isZero(0) &&
+                   placement.translate.isZero(0)),
+      to_scene_(transform_of(placement)),
+      to_shape_(to_scene_.inverse()),
+      normal_to_scene_(to_shape_.linear().transpose()) {
+  if (!(placement.scale.minCoeff() > 0 && to_scene_.matrix().allFinite() && to_shape_.matrix().allFinite()))
+    throw UsageError("placement of a shape: expected finite values and scales above 0");
+}
+
+Ray PlacedFrame::to_shape(const Ray& ray) const {
+  return {to_shape_ * ray.origin, to_shape_.linear() * ray.direction};
+}
+
+Hit PlacedFrame::to_scene(Hit hit) const {
+  const Eigen::Matrix3d& linear = to_scene_.linear();
+  hit.position = to_scene_ * hit.position;
+  // No scale stretches more than all of the matrix; moving far away rounds the position again.
+  hit.error = std::max(hit.error * linear.norm(), relative_error * hit.position.cwiseAbs().maxCoeff());
+  hit.face_normal = (normal_to_scene_ * hit.face_normal).normalized();
+  hit.normal = (normal_to_scene_ * hit.normal).normalized();
+  hit.tangent = linear * hit.tangent;
+  hit.dpdu = linear * hit.dpdu;
+  hit.dpdv = linear * hit.dpdv;
+  return hit;
+}
+
+}  // namespace mica
