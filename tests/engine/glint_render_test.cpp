@@ -104,9 +104,9 @@ TEST(GlintRender, AddsUpToTheSmoothDistribution) {
 }
 
 TEST(GlintRender, ColorsAverageToTheirMean) {
-  const RenderResult white = render_sphere("");
+  const RenderResult white = render_sphere("density = 1e8");
   const RenderResult colored =
-      render_sphere("colors = [[1, 0, 0], [1, 0.5, 0], [0.4, 0.4, 0.4], [0, 0.3, 0]]");
+      render_sphere("density = 1e8\ncolors = [[1, 0, 0], [1, 0.5, 0], [0.4, 0.4, 0.4], [0, 0.3, 0]]");
   const double expected[] = {0.6, 0.3, 0.1};
   for (std::size_t channel = 0; channel < 3; ++channel)
     EXPECT_NEAR(total(colored, channel), expected[channel] * total(white, channel),

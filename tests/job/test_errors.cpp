@@ -44,7 +44,7 @@ const std::vector<Mistake> unknown_keys = {
     {"\"bumps\"", "\"bumps\"\nspecular = { ior = 1.5, @kk = 1 }",
      "material.gold.specular.kk: found an unknown key; expected \"ior\""},
     {"\"bumps\"", "\"bumps\"\n@\"a b\" = 1",
-     "material.gold.\"a b\": found an unknown key; expected one of: surface, repeat, ndf, roughness, "
+     "material.gold.\"a b\": found an unknown key; expected one of: repeat, ndf, surface, roughness, "
      "specular, "
      "diffuse, coat"},
 };
