@@ -35,6 +35,14 @@
   OFFSET(mica_mixture_query, blur_1)        \
   OFFSET(mica_mixture_query, blur_2)        \
   OFFSET(mica_mixture_query, spread_variance) \
-  OFFSET(mica_mixture_query, kernel_variance)
+  OFFSET(mica_mixture_query, kernel_variance) \
+  SIZE(mica_lobe_query)                     \
+  OFFSET(mica_lobe_query, map)              \
+  OFFSET(mica_lobe_query, slope_x)          \
+  OFFSET(mica_lobe_query, slope_y)          \
+  OFFSET(mica_lobe_query, slope_rest_x)     \
+  OFFSET(mica_lobe_query, slope_rest_y)     \
+  OFFSET(mica_lobe_query, slope_unit)       \
+  OFFSET(mica_lobe_query, spread_variance)
 
 #endif  // MICA_STRUCT_LAYOUT_H

@@ -24,7 +24,10 @@ enum {
   MICA_TILE = 16,            // texels a side; sixteen tiles a block
   MICA_LEAF = 4,             // texels a side; sixteen leaves a tile
   MICA_NODE_STRIDE = 64,     // shorts a node: s_min[16], s_max[16], t_min[16], t_max[16]
-  MICA_MIXTURE_NODE_STRIDE = 80  // the same of the elements' means, then spread[16]
+  MICA_MIXTURE_NODE_STRIDE = 80, // the same of the elements' means, then spread[16]
+  // Shorts a leaf of lobes: mean_x[16], mean_y[16], and the rows of the spread's Cholesky factor xx[16], yx[16], yy[16];
+  // then four floats: the mean that the means are counted from, x and y, and the units of means and of spreads.
+  MICA_LOBE_LEAF = 88
 };
 
 // Normals (s, t) are 32-bit fixed point: the difference of two is exact, and 2^-30 is fine enough for
@@ -90,7 +93,19 @@ typedef struct {
   MICA_FLOAT kernel_variance;       // k
 } mica_mixture_query;
 
+// One query of a mixture of Beckmann lobes; `map` is in units of an element, and its half_s, half_t are not used.
+// [Che18] Eq. 9.
+typedef struct {
+  mica_map_query map;
+  MICA_FLOAT slope_x, slope_y;            // of the half vector,
+  MICA_FLOAT slope_rest_x, slope_rest_y;  // and what floats leave of it
+  MICA_FLOAT slope_unit;                  // of the bounds of nodes
+  MICA_FLOAT spread_variance;             // what a squared `spread` of a node counts for, in roughnesses squared
+} mica_lobe_query;
+
 #ifdef __cplusplus
+static_assert(sizeof(mica_lobe_query) == 88 && offsetof(mica_lobe_query, slope_x) == 64 &&
+              offsetof(mica_lobe_query, spread_variance) == 84);
 static_assert(sizeof(mica_mixture_query) == 96 && offsetof(mica_mixture_query, axis_1x) == 64 &&
               offsetof(mica_mixture_query, kernel_variance) == 92);
 static_assert(sizeof(mica_map_grid) == 16 && offsetof(mica_map_grid, blocks_x) == 8);

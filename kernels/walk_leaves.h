@@ -2,6 +2,7 @@
 // children at a time. The kernel says what its queries and nodes are, and what to do with a leaf:
 //   LEAF_QUERY                the query's struct, with LEAF_PLACE(query) its mica_map_query (default: itself);
 //   LEAF_NODE_STRIDE          shorts a node;
+//   LEAF_DATA, LEAF_AT(leaf_i, leaf_j)   what leaves are stored as (default: ints), and where in a `block` (default: normals);
 //   LEAF_SURVIVORS(query, node, i, j, child_size, scratch)   bits of the children that matter;
 //   leaf_results, LEAF_TAKE(query, normals, at, i, j, room_i, room_j, results, scratch)   what a leaf adds to.
 #ifndef MICA_WALK_LEAVES_H
@@ -9,12 +10,18 @@
 
 #include "map_cull.h"
 
+#ifndef LEAF_DATA
+#define LEAF_DATA int
+#endif
+#ifndef LEAF_AT
+#define LEAF_AT(leaf_i, leaf_j) (block.index * MICA_BLOCK_STRIDE + ((leaf_j) + 1) * MICA_BLOCK_ROW + (leaf_i) + 1)
+#endif
 #ifndef LEAF_PLACE
 #define LEAF_PLACE(query) (query)
 #endif
 
-static inline void walk_leaves(global const LEAF_QUERY* query, mica_map_grid grid, global const int* normals,
-                               global const short* block_nodes, global const short* tile_nodes,
+static inline void walk_leaves(global const LEAF_QUERY* query, mica_map_grid grid,
+                               global const LEAF_DATA* normals, global const short* block_nodes, global const short* tile_nodes,
                                private leaf_results* results, WAVE_SHARED int* scratch) {
   global const mica_map_query* place = LEAF_PLACE(query);
   // Quad (i, j) spans [i, i + 1] in the coordinates of the mean.
@@ -30,7 +37,6 @@ static inline void walk_leaves(global const LEAF_QUERY* query, mica_map_grid gri
       const map_block block = locate_block(grid, place, block_x, block_y);
       const int map_room_i = grid.width - (block.index % grid.blocks_x) * MICA_BLOCK;
       const int map_room_j = grid.height - (block.index / grid.blocks_x) * MICA_BLOCK;
-      const int first_texel = block.index * MICA_BLOCK_STRIDE + MICA_BLOCK_ROW + 1;
       uint tiles = LEAF_SURVIVORS(query, block_nodes + block.index * LEAF_NODE_STRIDE, block.i, block.j, MICA_TILE,
                                   scratch);
       for (; tiles; tiles &= tiles - 1) {
@@ -41,8 +47,8 @@ static inline void walk_leaves(global const LEAF_QUERY* query, mica_map_grid gri
         for (; leaves; leaves &= leaves - 1) {
           const int leaf = lowest_bit(leaves);
           const int leaf_i = tile_i + (leaf & 3) * MICA_LEAF, leaf_j = tile_j + (leaf >> 2) * MICA_LEAF;
-          LEAF_TAKE(query, normals, first_texel + leaf_j * MICA_BLOCK_ROW + leaf_i, block.i + leaf_i,
-                    block.j + leaf_j, map_room_i - leaf_i, map_room_j - leaf_j, results, scratch);
+          LEAF_TAKE(query, normals, LEAF_AT(leaf_i, leaf_j), block.i + leaf_i, block.j + leaf_j,
+                    map_room_i - leaf_i, map_room_j - leaf_j, results, scratch);
         }
       }
     }

@@ -17,5 +17,6 @@ void add_eval(CLI::App& app, Command* chosen);
 void add_map(CLI::App& app, Command* chosen);
 void add_devices(CLI::App& app, Command* chosen);
 void add_selftest(CLI::App& app, Command* chosen);
+void add_bench(CLI::App& app, Command* chosen);
 
 }  // namespace mica::app

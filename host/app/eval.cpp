@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "host/app/commands.h"
+#include "host/app/eval_patch.h"
 #include "host/app/evaluation.h"
 #include "host/app/grid_options.h"
 #include "host/app/json_file.h"
@@ -14,6 +15,7 @@
 #include "host/app/output.h"
 #include "host/app/query_table.h"
 #include "host/base/error.h"
+#include "host/engine/make_patch_brdf.h"
 #include "host/engine/map_query.h"
 #include "host/image/image.h"
 
@@ -26,6 +28,7 @@ struct EvalOptions {
   MapOptions map;
   GridOptions grid;
   std::string quantity = "ndf", ndf, queries, output, json;
+  std::string masking = "exact", part = "all";
   std::optional<double> roughness, tolerance;
   int device = 0, elements = 1;
 };
@@ -100,7 +103,15 @@ QueryTable read_queries(const EvalOptions& options) {
   return QueryTable(options.queries, options.roughness);
 }
 
+int run_patches(const EvalOptions& options) {
+  if (options.tolerance) throw UsageError("--tolerance is for --quantity ndf");
+  return evaluate_patches({options.map, options.quantity, options.ndf, options.queries, options.output,
+                           options.json, options.masking, options.part, options.roughness, options.grid.seed,
+                           options.device, options.elements});
+}
+
 int run(const EvalOptions& options) {
+  if (options.quantity != "ndf") return run_patches(options);
   check_tolerance(options.ndf, options.tolerance);
   check_extension(options.output, {".npy"});
   prepare_output(options.output);
@@ -138,6 +149,26 @@ std::vector<std::string> evaluator_choices() {
   return names;
 }
 
+void add_patch_options(CLI::App* command, EvalOptions* options) {
+  std::vector<std::string> quantities = patch_quantities();
+  quantities.insert(quantities.begin(), "ndf");
+  command->add_option("--quantity", options->quantity, "What is evaluated")
+      ->type_name("NAME")
+      ->check(CLI::IsMember(quantities))
+      ->capture_default_str();
+  command
+      ->add_option("--masking", options->masking,
+                   "Of a BRDF: of every lobe under the footprint, of one lobe with their moments, or of the "
+                   "map's roughness")
+      ->type_name("NAME")
+      ->check(CLI::IsMember(masking_names()))
+      ->capture_default_str();
+  command->add_option("--part", options->part, "Light that bounced once, more often, or both")
+      ->type_name("NAME")
+      ->check(CLI::IsMember(std::vector<std::string>{"single", "multiple", "all"}))
+      ->capture_default_str();
+}
+
 }  // namespace
 
 void add_eval(CLI::App& app, Command* chosen) {
@@ -155,13 +186,16 @@ void add_eval(CLI::App& app, Command* chosen) {
       "--roughness\n"
       "With --ndf grid, uv is that of its --density, and roughness the --microroughness of one glint.\n"
       "Output: D, the density of normals over the unit disk at (s, t), float32, shape (rows,).\n"
-      "A row that cannot be evaluated is named, and nothing is written.");
+      "A row that cannot be evaluated is named, and nothing is written.\n"
+      "Other quantities, of evaluators with a BRDF of their own, have directions in place of s t, of any\n"
+      "length but 0, z along the geometric normal g; below the horizon nothing is seen and all is 0:\n"
+      "  brdf    u v cuu cuv cvv ox oy oz ix iy iz [roughness] -> f(o, i) max(i.g, 0), without Fresnel\n"
+      "  energy  u v cuu cuv cvv ox oy oz [roughness] -> what a white patch scatters at once, and what it "
+      "loses\n"
+      "  sample  u v cuu cuv cvv ox oy oz [roughness] -> ix iy iz pdf weight; pdf 0: nothing was drawn");
   add_map_options(command, &options->map);
   add_grid_options(command, &options->grid);
-  command->add_option("--quantity", options->quantity, "What is evaluated; ndf is all there is so far")
-      ->type_name("NAME")
-      ->check(CLI::IsMember(std::vector<std::string>{"ndf"}))
-      ->capture_default_str();
+  add_patch_options(command, options.get());
   command->add_option("--ndf", options->ndf, "Evaluator; reference is the host in double precision")
       ->required()
       ->type_name("NAME")

@@ -105,28 +105,36 @@ OpenEvaluator open_grid(const GlintGrid& grid, int device_index) {
   return open;
 }
 
-std::vector<float> evaluate_all(Evaluator* evaluator, std::size_t count,
-                                const std::function<Query(std::size_t)>& query) {
+void work_in_chunks(std::size_t count, const std::function<void(std::size_t, std::size_t)>& work) {
   constexpr std::size_t max_chunk = 1 << 20;  // queries; also bounds the host's memory
-  std::vector<float> densities;
-  densities.reserve(count);
-  std::vector<Query> queries;
   Progress progress("queries", false);
   const Clock::time_point all_start = Clock::now();
-  for (std::size_t chunk = 256; densities.size() < count;) {
+  std::size_t chunk = 256;
+  for (std::size_t first = 0; first < count;) {
     check_interrupt();
     const Clock::time_point start = Clock::now();
-    queries.resize(std::min(chunk, count - densities.size()));
-    for (std::size_t n = 0; n < queries.size(); ++n) queries[n] = query(densities.size() + n);
-    const std::vector<float> answers = evaluator->evaluate(queries);
-    densities.insert(densities.end(), answers.begin(), answers.end());
+    const std::size_t some = std::min(chunk, count - first);
+    work(first, some);
+    first += some;
     const double seconds = seconds_since(start);
-    if (seconds_since(all_start) > 1)
-      progress.update(static_cast<long>(densities.size()), static_cast<long>(count));
+    if (seconds_since(all_start) > 1) progress.update(static_cast<long>(first), static_cast<long>(count));
     if (seconds < 0.5) chunk = std::min(2 * chunk, max_chunk);
     if (seconds > 2) chunk = std::max<std::size_t>(chunk / 2, 1);
   }
   check_interrupt();
+}
+
+std::vector<float> evaluate_all(Evaluator* evaluator, std::size_t count,
+                                const std::function<Query(std::size_t)>& query) {
+  std::vector<float> densities;
+  densities.reserve(count);
+  std::vector<Query> queries;
+  work_in_chunks(count, [&](std::size_t first, std::size_t some) {
+    queries.resize(some);
+    for (std::size_t n = 0; n < some; ++n) queries[n] = query(first + n);
+    const std::vector<float> answers = evaluator->evaluate(queries);
+    densities.insert(densities.end(), answers.begin(), answers.end());
+  });
   return densities;
 }
 

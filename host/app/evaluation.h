@@ -37,8 +37,11 @@ OpenEvaluator open_grid(const GlintGrid& grid, int device_index);
 /// Throws UsageError when evaluator `name` cannot keep a relative error of `tolerance`.
 void check_tolerance(const std::string& name, std::optional<double> tolerance);
 
-/// Densities of queries 0 .. count - 1. Works in chunks of about a second each, between which it checks
-/// for interrupts; shows progress on stderr once it has taken a second.
+/// Calls `work(first, count)` for successive chunks of 0 .. count - 1, each of about a second, between which
+/// it checks for interrupts; shows progress on stderr once it has taken a second.
+void work_in_chunks(std::size_t count, const std::function<void(std::size_t, std::size_t)>& work);
+
+/// Densities of queries 0 .. count - 1, in chunks.
 std::vector<float> evaluate_all(Evaluator* evaluator, std::size_t count,
                                 const std::function<Query(std::size_t)>& query);
 

@@ -36,7 +36,7 @@ void add_grid_options(CLI::App* command, GridOptions* options) {
       ->type_name("X")
       ->capture_default_str()
       ->group(group);
-  command->add_option("--seed", options->seed, "Of the glints")
+  command->add_option("--seed", options->seed, "Of the glints of a grid, or of --quantity sample")
       ->type_name("N")
       ->capture_default_str()
       ->group(group);

@@ -28,6 +28,7 @@ int run(int argc, char** argv) {
   mica::app::add_map(app, &chosen);
   mica::app::add_devices(app, &chosen);
   mica::app::add_selftest(app, &chosen);
+  mica::app::add_bench(app, &chosen);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -204,10 +204,11 @@ Table read_npy(const std::string& path) {
   return table;
 }
 
-std::string to_npy(const std::vector<float>& values) {
+std::string to_npy(const std::vector<float>& values, std::size_t columns) {
   constexpr std::size_t alignment = 64, length_size = 2;
-  std::string text =
-      fmt::format("{{'descr': '<f4', 'fortran_order': False, 'shape': ({},), }}", values.size());
+  const std::string shape = columns == 0 ? fmt::format("({},)", values.size())
+                                         : fmt::format("({}, {})", values.size() / columns, columns);
+  std::string text = fmt::format("{{'descr': '<f4', 'fortran_order': False, 'shape': {}, }}", shape);
   const std::size_t before = kMagicSize + 2 + length_size;
   text.append(alignment - 1 - (before + text.size()) % alignment, ' ');
   text += '\n';

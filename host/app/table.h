@@ -19,8 +19,9 @@ struct Table {
 /// Throws FileError when the file cannot be read or is damaged, UsageError for an array of another kind.
 Table read_npy(const std::string& path);
 
-/// Bytes of a NumPy file (version 1.0) that holds a float32 array of shape (n,).
-std::string to_npy(const std::vector<float>& values);
+/// Bytes of a NumPy file (version 1.0) that holds a float32 array of shape (n,), or of shape (n, columns)
+/// when there are columns.
+std::string to_npy(const std::vector<float>& values, std::size_t columns = 0);
 
 /// A comma-separated file. Its first line names the columns, in any order; it may begin with `#`, as NumPy
 /// writes it. Empty lines are left out.

@@ -4,13 +4,14 @@
 #include <fmt/ranges.h>
 
 #include "host/base/error.h"
+#include "host/engine/beckmann_evaluator.h"
 #include "host/engine/mixture_evaluator.h"
 #include "host/engine/triangle_evaluator.h"
 
 namespace mica {
 
 const std::vector<std::string>& evaluator_names() {
-  static const std::vector<std::string> names = {"triangles", "gaussians"};
+  static const std::vector<std::string> names = {"triangles", "gaussians", "beckmanns"};
   return names;
 }
 
@@ -20,6 +21,7 @@ std::unique_ptr<Evaluator> make_evaluator(const std::string& name, Device& devic
   MixtureSettings mixture;
   mixture.elements = elements;
   if (name == "gaussians") return std::make_unique<GaussianEvaluator>(device, surface, mixture);
+  if (name == "beckmanns") return std::make_unique<BeckmannEvaluator>(device, surface, mixture);
   throw UsageError(
       fmt::format("there is no evaluator \"{}\"; available: {}", name, fmt::join(evaluator_names(), ", ")));
 }

@@ -9,6 +9,7 @@
 namespace mica {
 namespace {
 
+using device_types::mica_lobe_query;
 using device_types::mica_map_query;
 using device_types::mica_mixture_query;
 
@@ -27,6 +28,9 @@ mica_map_query& place_of(mica_map_query& query) {
   return query;
 }
 mica_map_query& place_of(mica_mixture_query& query) {
+  return query.map;
+}
+mica_map_query& place_of(mica_lobe_query& query) {
   return query.map;
 }
 
@@ -82,15 +86,16 @@ class MapBatches<DeviceQuery>::Densities : public PendingDensities {
       throw opencl_error(error, "evaluating " + method);
     }
     // A density is finite and not negative: rounding may leave -0 or a denormal, never more.
-    std::vector<float> ordered(queries.size());
-    for (std::size_t n = 0; n < queries.size(); ++n) {
+    std::vector<float> ordered(results.size());
+    for (std::size_t n = 0; n < results.size(); ++n) {
       if (!std::isfinite(results[n])) throw DeviceError("evaluating " + method + ": a density is not finite");
-      ordered[order[n]] = std::max(results[n], 0.0f);
+      ordered[order[n / answers] * answers + n % answers] = std::max(results[n], 0.0f);
     }
     return ordered;
   }
 
   std::string method;
+  std::size_t answers = 1;           // a query
   std::vector<DeviceQuery> queries;  // alive until the device has read them
   std::vector<std::uint32_t> order;  // of the query at each place
   std::vector<float> results;
@@ -101,16 +106,26 @@ class MapBatches<DeviceQuery>::Densities : public PendingDensities {
 template <typename DeviceQuery>
 MapBatches<DeviceQuery>::MapBatches(Device& device, const MapStructure& map, const std::string& method,
                                     const std::string& options, WaveForm wave_form, std::size_t batch_queries)
+    : MapBatches(device, map.grid,
+                 {device.upload(map.normals, "the map's normals"),
+                  device.upload(map.block_nodes, "the map's bounds"),
+                  device.upload(map.tile_nodes, "the map's bounds")},
+                 map.bytes(), method, options, wave_form, batch_queries) {}
+
+template <typename DeviceQuery>
+MapBatches<DeviceQuery>::MapBatches(Device& device, const device_types::mica_map_grid& grid,
+                                    std::vector<cl::Buffer> structure, std::size_t bytes,
+                                    const std::string& method, const std::string& options, WaveForm wave_form,
+                                    std::size_t batch_queries, std::size_t answers)
     : device_(device),
       method_(method),
       wave_form_(wave_form),
-      grid_(map.grid),
+      grid_(grid),
       batch_queries_(
           std::clamp<std::size_t>(batch_queries, 1, device.info().allocation_bytes / sizeof(DeviceQuery))),
-      device_bytes_(map.bytes()),
-      normals_(device.upload(map.normals, "the map's normals")),
-      block_nodes_(device.upload(map.block_nodes, "the map's bounds")),
-      tile_nodes_(device.upload(map.tile_nodes, "the map's bounds")),
+      device_bytes_(bytes),
+      answers_(answers),
+      structure_(std::move(structure)),
       kernel_(device.kernel(method + ".cl", method, options, wave_form)) {}
 
 template <typename DeviceQuery>
@@ -123,7 +138,8 @@ std::unique_ptr<PendingDensities> MapBatches<DeviceQuery>::start(std::vector<Dev
   pending->device_seconds = device_seconds_;
   const std::size_t count = pending->queries.size();
   pending->order.resize(count);
-  pending->results.resize(count);
+  pending->answers = answers_;
+  pending->results.resize(count * answers_);
   for (std::size_t n = 0; n < count; ++n) {
     std::int32_t& slot = place_of(pending->queries[n]).slot;
     pending->order[n] = static_cast<std::uint32_t>(slot);
@@ -139,24 +155,24 @@ void MapBatches<DeviceQuery>::enqueue(std::size_t first, Densities* pending) {
   const std::size_t count = std::min(batch_queries_, queries.size() - first);
   const cl::Buffer input =
       device_.buffer(count * sizeof(DeviceQuery), CL_MEM_READ_ONLY, "a batch of queries");
-  const cl::Buffer output = device_.buffer(count * sizeof(float), CL_MEM_WRITE_ONLY, "a batch of densities");
+  const std::size_t output_bytes = count * answers_ * sizeof(float);
+  const cl::Buffer output = device_.buffer(output_bytes, CL_MEM_WRITE_ONLY, "a batch of densities");
   try {
     device_.queue().enqueueWriteBuffer(input, CL_FALSE, 0, count * sizeof(DeviceQuery),
                                        queries.data() + first);
     kernel_.setArg(0, input);
     kernel_.setArg(1, static_cast<cl_int>(count));
     kernel_.setArg(2, sizeof grid_, &grid_);
-    kernel_.setArg(3, normals_);
-    kernel_.setArg(4, block_nodes_);
-    kernel_.setArg(5, tile_nodes_);
-    kernel_.setArg(6, output);
+    cl_uint argument = 3;
+    for (const cl::Buffer& buffer : structure_) kernel_.setArg(argument++, buffer);
+    kernel_.setArg(argument, output);
     const bool vectors = wave_form_ == WaveForm::vectors;
     const std::size_t global = vectors ? round_up(count, kCpuGroup) : count * kWaveLanes;
     const std::size_t local = vectors ? kCpuGroup : kWaveLanes;
     cl::Event kernel_done, read_done;
     device_.queue().enqueueNDRangeKernel(kernel_, cl::NullRange, global, local, nullptr, &kernel_done);
-    device_.queue().enqueueReadBuffer(output, CL_FALSE, 0, count * sizeof(float),
-                                      pending->results.data() + first, nullptr, &read_done);
+    device_.queue().enqueueReadBuffer(output, CL_FALSE, 0, output_bytes,
+                                      pending->results.data() + first * answers_, nullptr, &read_done);
     pending->kernels.push_back(kernel_done);
     pending->done.push_back(read_done);
     device_.queue().flush();
@@ -167,5 +183,6 @@ void MapBatches<DeviceQuery>::enqueue(std::size_t first, Densities* pending) {
 
 template class MapBatches<mica_map_query>;
 template class MapBatches<mica_mixture_query>;
+template class MapBatches<mica_lobe_query>;
 
 }  // namespace mica

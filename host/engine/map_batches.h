@@ -13,7 +13,7 @@ namespace mica {
 
 /// What every kernel on a map's structure needs to run: its buffers on the device, and queries fed in
 /// batches, sorted by where their footprints lie.
-/// @tparam DeviceQuery mica_map_query, or a struct that begins with one as `map`.
+/// @tparam DeviceQuery mica_map_query, or a struct that begins with one.
 template <typename DeviceQuery>
 class MapBatches {
  public:
@@ -24,7 +24,14 @@ class MapBatches {
   MapBatches(Device& device, const MapStructure& map, const std::string& method, const std::string& options,
              WaveForm wave_form, std::size_t batch_queries);
 
-  /// Sends queries, in any order and with any slot.
+  /// The same for a kernel with other buffers between the grid and the densities.
+  /// @param structure its buffers, in the order of its arguments; @param bytes of all of them.
+  /// @param answers floats a query that the kernel writes, to density[slot * answers] and on.
+  MapBatches(Device& device, const device_types::mica_map_grid& grid, std::vector<cl::Buffer> structure,
+             std::size_t bytes, const std::string& method, const std::string& options, WaveForm wave_form,
+             std::size_t batch_queries, std::size_t answers = 1);
+
+  /// Sends queries, in any order and with any slot. Answers come in the order of the queries.
   std::unique_ptr<PendingDensities> start(std::vector<DeviceQuery> queries);
 
   const device_types::mica_map_grid& grid() const { return grid_; }
@@ -39,13 +46,14 @@ class MapBatches {
   std::string method_;
   WaveForm wave_form_;
   device_types::mica_map_grid grid_;
-  std::size_t batch_queries_, device_bytes_;
+  std::size_t batch_queries_, device_bytes_, answers_;
   std::shared_ptr<double> device_seconds_ = std::make_shared<double>(0.0);  // shared with pending densities
-  cl::Buffer normals_, block_nodes_, tile_nodes_;
+  std::vector<cl::Buffer> structure_;
   cl::Kernel kernel_;
 };
 
 extern template class MapBatches<device_types::mica_map_query>;
 extern template class MapBatches<device_types::mica_mixture_query>;
+extern template class MapBatches<device_types::mica_lobe_query>;
 
 }  // namespace mica

@@ -21,14 +21,8 @@ double difference_of_products(double a, double b, double c, double d) {
   return std::fma(a, b, -cd) + std::fma(-c, d, cd);
 }
 
-/// Whole texels in [0, size) and the rest in [0, 1) of a texture coordinate less `shift` texels.
-void wrap_texel(double coordinate, int size, double shift, std::int32_t* whole, float* rest) {
-  const double texels = (coordinate - std::floor(coordinate)) * size - shift;
-  const double base = std::floor(texels);
-  *whole = static_cast<std::int32_t>(base);
-  *rest = static_cast<float>(texels - base);
-  if (*rest >= 1.0f) *rest = 0.0f, ++*whole;  // rounded up
-  *whole = (*whole % size + size) % size;
+std::int32_t to_fixed(double normal) {
+  return static_cast<std::int32_t>(std::lround(normal * MICA_NORMAL_ONE));
 }
 
 /// Two integer vectors that span all others, such that `form` of the first is the least of all and that of
@@ -48,6 +42,17 @@ Eigen::Matrix2d reduced_waves(const Eigen::Matrix2d& form) {
   return waves;
 }
 
+}  // namespace
+
+void wrap_texel(double coordinate, int size, double shift, std::int32_t* whole, float* rest) {
+  const double texels = (coordinate - std::floor(coordinate)) * size - shift;
+  const double base = std::floor(texels);
+  *whole = static_cast<std::int32_t>(base);
+  *rest = static_cast<float>(texels - base);
+  if (*rest >= 1.0f) *rest = 0.0f, ++*whole;  // rounded up
+  *whole = (*whole % size + size) % size;
+}
+
 /// On a periodic map a footprint weights each wave k of the map's Fourier series, k a pair of integers, by
 /// exp(-2 pi^2 k' cov k). Where that exponent lets nothing through, covariances that let nothing through
 /// either are as good: a footprint of many periods has one of at most 0.8, of which 4 * 3e-6 is left beside
@@ -65,12 +70,6 @@ Footprint without_needless_periods(const Footprint& footprint) {
   const Eigen::Vector2d variances(form(0, 0), uniform_variance);
   return {footprint.mean_uv, to_plane.transpose() * variances.asDiagonal() * to_plane};
 }
-
-std::int32_t to_fixed(double normal) {
-  return static_cast<std::int32_t>(std::lround(normal * MICA_NORMAL_ONE));
-}
-
-}  // namespace
 
 FootprintAxes footprint_axes(const Footprint& footprint, int map_width, int map_height) {
   const double w = map_width, h = map_height;
@@ -141,12 +140,6 @@ device_types::mica_map_query to_map_query(const Query& query, const device_types
   return result;
 }
 
-namespace {
-
-/// What the position kernels' weights under a footprint sum to, by Poisson's summation of
-/// sum_n h^2 N(h (n + 1/2) - rest; cov): 1 where the kernels and the footprint are wide, 6% an axis off where
-/// they are not.
-/// @param cov_spacings of footprint and kernel together, in spacings^2.
 double sum_of_weights(const Eigen::Matrix2d& cov_spacings, const Eigen::Vector2d& mean_spacings) {
   constexpr int orders = 2;  // the third one's terms are below exp(-2 pi^2 9 k) = 1e-14
   double sum = 0;
@@ -160,8 +153,6 @@ double sum_of_weights(const Eigen::Matrix2d& cov_spacings, const Eigen::Vector2d
   }
   return sum;
 }
-
-}  // namespace
 
 device_types::mica_mixture_query to_mixture_query(const Query& query, const device_types::mica_map_grid& grid,
                                                   Interpolation interpolation, int elements, double cutoff) {

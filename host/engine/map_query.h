@@ -21,6 +21,19 @@ struct FootprintAxes {
 };
 FootprintAxes footprint_axes(const Footprint& footprint, int map_width, int map_height);
 
+/// Whole texels in [0, size) and the rest in [0, 1) of a texture coordinate less `shift` texels.
+void wrap_texel(double coordinate, int size, double shift, std::int32_t* whole, float* rest);
+
+/// On a periodic map a footprint far wider than a period is a uniform one, and so is one of 0.8 periods,
+/// which replaces it.
+Footprint without_needless_periods(const Footprint& footprint);
+
+/// What the weights of a mixture's elements under a footprint sum to, by Poisson's summation of
+/// sum_n h^2 N(h (n + 1/2) - rest; cov): 1 where the covariance is wide, 6% an axis off where it is the
+/// position kernel's.
+/// @param cov_spacings of the weights, in spacings^2. @param mean_spacings of the footprint.
+double sum_of_weights(const Eigen::Matrix2d& cov_spacings, const Eigen::Vector2d& mean_spacings);
+
 /// The query in the kernels' form. uv is wrapped in double precision, so 1e7 periods away nothing is lost but
 /// what the uv itself cannot hold.
 /// @param cutoff largest sum of both Gaussians' squared distances that counts, see `cutoff_for`.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <string>
 #include <vector>
@@ -24,6 +25,15 @@ void write_exr(const std::string& path, const Image& image);
 /// A preview: values up to 0.8 are shown as they are, what is above rolls off towards 1, so that glints keep
 /// their colour a little longer than a clamp would. NaN is shown black.
 void write_png(const std::string& path, const Image& image, double exposure);
+
+/// The bytes of the file that write_png would write. Throws FileError.
+std::string encode_png(const Image& image, double exposure);
+
+/// The bytes of an 8-bit PNG of sRGB pixels, as they are, rows from the top. Throws FileError.
+std::string encode_png(int width, int height, const std::vector<std::uint8_t>& srgb);
+
+/// Linear light in [0, 1] that a preview shows for a radiance.
+double displayed_value(float radiance);
 
 /// Writes bytes to `path`, whole or not at all. Throws FileError.
 void write_file_atomically(const std::string& path, const std::string& bytes);

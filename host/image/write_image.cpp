@@ -81,7 +81,9 @@ void write_exr(const std::string& path, const Image& image) {
   write_file_atomically(path, encode(path, "openexr", spec, image.pixels.data()));
 }
 
-void write_png(const std::string& path, const Image& image, double exposure) {
+namespace {
+
+std::string png_bytes(const std::string& path, const Image& image, double exposure) {
   check(path, image);
   const std::vector<std::size_t> channels = display_channels(path, image);
   const std::size_t pixel_count = image.pixels.size() / image.channels.size();
@@ -95,7 +97,27 @@ void write_png(const std::string& path, const Image& image, double exposure) {
 
   OIIO::ImageSpec spec(image.width, image.height, static_cast<int>(channels.size()), OIIO::TypeUInt8);
   spec.attribute("oiio:ColorSpace", "sRGB");
-  write_file_atomically(path, encode(path, "png", spec, values.data()));
+  return encode(path, "png", spec, values.data());
+}
+
+}  // namespace
+
+void write_png(const std::string& path, const Image& image, double exposure) {
+  write_file_atomically(path, png_bytes(path, image, exposure));
+}
+
+std::string encode_png(const Image& image, double exposure) {
+  return png_bytes("a picture.png", image, exposure);
+}
+
+std::string encode_png(int width, int height, const std::vector<std::uint8_t>& srgb) {
+  OIIO::ImageSpec spec(width, height, 3, OIIO::TypeUInt8);
+  spec.attribute("oiio:ColorSpace", "sRGB");
+  return encode("a picture.png", "png", spec, srgb.data());
+}
+
+double displayed_value(float radiance) {
+  return radiance > 0 ? roll_off(radiance) : 0;
 }
 
 }  // namespace mica

@@ -11,8 +11,8 @@
 #include "host/engine/accuracy.h"
 #include "host/engine/mixture_evaluator.h"
 #include "host/reference/gaussian_mixture.h"
-#include "host/surface/random.h"
 #include "tests/engine/bilinear_samples.h"
+#include "tests/engine/mixture_surfaces.h"
 
 namespace mica {
 namespace {
@@ -24,46 +24,10 @@ Device& device() {
   return shared;
 }
 
-Surface spectrum() {
-  return make_surface({"test", SpectrumSurface{256, 0.15, 8, 3}, Interpolation::bilinear}, nullptr);
-}
-Surface flakes(Interpolation interpolation) {
-  return make_surface({"test", FlakesSurface{128, 12, 0.2, 5}, interpolation}, nullptr);
-}
-/// Twice as steep a texel as the noise along u, nearly flat along v; a period that is no multiple of a leaf.
-Surface brushed() {
-  constexpr int width = 203, height = 150;
-  std::vector<Eigen::Vector2d> normals;
-  for (int j = 0; j < height; ++j) {
-    for (int i = 0; i < width; ++i) {
-      const double x = 2 * kPi * i / width, y = 2 * kPi * j / height;
-      normals.emplace_back(0.08 * std::sin(17 * x + std::sin(y)) + 0.06 * std::cos(29 * x - 2 * y),
-                           0.02 * std::sin(9 * x + 3 * y));
-    }
-  }
-  return Surface(width, height, Interpolation::bilinear, std::move(normals));
-}
-
 GaussianEvaluator gaussians(const Surface& surface, int elements) {
   MixtureSettings settings;
   settings.elements = elements;
   return GaussianEvaluator(device(), surface, settings);
-}
-
-/// Footprints of 0.25 to `largest` texels, round to 30:1, each with half vectors on, near and far from its
-/// normals.
-std::vector<std::vector<Query>> probes(const Surface& surface, double roughness, double largest) {
-  constexpr int footprints = 12;
-  std::vector<std::vector<Query>> all;
-  for (int n = 0; n < footprints; ++n) {
-    const auto random = [&](std::uint64_t stream) { return synthesis::random_unit(21, stream, n); };
-    const double major = 0.25 * std::pow(largest / 0.25, n / (footprints - 1.0));
-    const double minor = std::max(major * std::pow(30, -random(0)), 0.05);
-    const Footprint footprint =
-        make_footprint(surface, {random(1), random(2)}, major, minor, kPi * random(3));
-    all.push_back(probe(surface, footprint, roughness, 8, n));
-  }
-  return all;
 }
 
 /// Single precision and culling may cost 1e-4 of the value and 2e-5 of the footprint's brightest.
@@ -72,7 +36,8 @@ void expect_plain_sum(const Surface& surface, int elements) {
   const reference::GaussianMixture mixture(surface, elements);
   double worst = 0;
   for (const double roughness : {1e-3, 5e-3, 0.03, 0.3}) {
-    for (const std::vector<Query>& queries : probes(surface, roughness, 64.0 / (elements * elements))) {
+    for (const std::vector<Query>& queries :
+         mixture_probes(surface, roughness, 64.0 / (elements * elements))) {
       const std::vector<float> densities = evaluator.evaluate(queries);
       const std::vector<double> expected = mixture.evaluate(queries);
       const double peak = *std::max_element(expected.begin(), expected.end());
@@ -89,14 +54,14 @@ void expect_plain_sum(const Surface& surface, int elements) {
 }
 
 TEST(Gaussians, AreThePlainSumOnNoise) {
-  for (const int elements : {1, 2, 4}) expect_plain_sum(spectrum(), elements);
+  for (const int elements : {1, 2, 4}) expect_plain_sum(mixture_spectrum(), elements);
 }
 TEST(Gaussians, AreThePlainSumOnBrushedMetal) {
-  expect_plain_sum(brushed(), 1);
+  expect_plain_sum(mixture_brushed(), 1);
 }
 TEST(Gaussians, AreThePlainSumOnFlakes) {
-  expect_plain_sum(flakes(Interpolation::nearest), 1);
-  expect_plain_sum(flakes(Interpolation::bilinear), 1);
+  expect_plain_sum(mixture_flakes(Interpolation::nearest), 1);
+  expect_plain_sum(mixture_flakes(Interpolation::bilinear), 1);
 }
 
 /// Relative L2 over half vectors under a footprint of 4 texels, against dense samples of the bilinear
@@ -117,8 +82,8 @@ TEST(Gaussians, AreAsCloseToTheMapAsPublished) {
   for (const Setting& setting :
        {Setting{1, 0.02, 0.07, 0.13}, Setting{1, 0.005, 0.22, 0.28}, Setting{2, 0.02, 0.005, 0.011},
         Setting{2, 0.005, 0.018, 0.027}, Setting{4, 0.005, 0.018, 0.027}}) {
-    const double noise = error_of(spectrum(), setting.elements, setting.roughness);
-    const double metal = error_of(brushed(), setting.elements, setting.roughness);
+    const double noise = error_of(mixture_spectrum(), setting.elements, setting.roughness);
+    const double metal = error_of(mixture_brushed(), setting.elements, setting.roughness);
     std::printf("%d elements, roughness %g: %.2f%% on noise, %.2f%% on brushed metal\n", setting.elements,
                 setting.roughness, 100 * noise, 100 * metal);
     EXPECT_LE(noise, setting.noise);
@@ -130,7 +95,7 @@ TEST(Gaussians, AreAsCloseToTheMapAsPublished) {
 TEST(Gaussians, IntegrateToOneWhereverTheFootprintLies) {
   constexpr double roughness = 0.02;
   constexpr int side = 150;  // grid points across [-1, 1]: finer than the roughness
-  for (const Surface& surface : {spectrum(), flakes(Interpolation::nearest)}) {
+  for (const Surface& surface : {mixture_spectrum(), mixture_flakes(Interpolation::nearest)}) {
     GaussianEvaluator evaluator = gaussians(surface, 1);
     for (const double sigma_texels : {0.25, 0.5, 3.0}) {
       for (const double place : {0.0, 0.5}) {  // between texels, on them
@@ -164,9 +129,9 @@ TEST(Gaussians, KeepFlakesApart) {
 }
 
 TEST(Gaussians, RefuseWhatTheyDoNotTake) {
-  EXPECT_THROW(gaussians(spectrum(), 0), UsageError);
-  EXPECT_THROW(gaussians(spectrum(), 5), UsageError);
-  EXPECT_THROW(gaussians(flakes(Interpolation::bicubic), 1), UsageError);
+  EXPECT_THROW(gaussians(mixture_spectrum(), 0), UsageError);
+  EXPECT_THROW(gaussians(mixture_spectrum(), 5), UsageError);
+  EXPECT_THROW(gaussians(mixture_flakes(Interpolation::bicubic), 1), UsageError);
 }
 
 }  // namespace

@@ -1,0 +1,60 @@
+// mica bench: speed against error, side by side in one run.
+#include <fmt/format.h>
+
+#include "host/app/commands.h"
+#include "host/app/interrupt.h"
+#include "host/app/output.h"
+#include "host/base/stopwatch.h"
+#include "host/bench/suite.h"
+#include "host/image/image.h"
+#include "host/report/bench_report.h"
+
+namespace mica::app {
+namespace {
+
+struct Options {
+  std::string suite = "quick", json, html;
+  int device = 0;
+  bool quiet = false;
+};
+
+int run(const Options& options) {
+  for (const std::string& path : {options.json, options.html})
+    if (!path.empty()) prepare_output(path);
+  Device device(options.device);
+  const Stopwatch watch;
+  const bench::Results results = bench::run_suite(options.suite, device, [&](const std::string& what) {
+    check_interrupt();
+    if (!options.quiet) fmt::print(stderr, "{:6.1f} s  {}\n", watch.seconds(), what);
+  });
+  fmt::print("{}", bench_summary(results));
+  if (!options.json.empty()) write_file_atomically(options.json, bench_json(results));
+  if (!options.html.empty()) write_file_atomically(options.html, bench_page(results));
+  if (!options.quiet) fmt::print(stderr, "took {:.0f} s\n", results.seconds);
+  return 0;
+}
+
+}  // namespace
+
+void add_bench(CLI::App& app, Command* chosen) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      app.add_subcommand("bench", "Measures every evaluator's speed and error, side by side in one run");
+  command->footer(
+      "quick takes less than a minute, standard less than ten, on two idle cores. Compare ratios within a "
+      "run,\n"
+      "not speeds of two runs. docs/benchmark.md says what is measured and how.");
+  command->add_option("suite", options->suite, "quick or standard")
+      ->check(CLI::IsMember(bench::suite_names()))
+      ->capture_default_str();
+  command->add_option("--json", options->json, "Writes every number as JSON")->type_name("FILE");
+  command->add_option("--html", options->html, "Writes a page with plots and pictures; it needs no network")
+      ->type_name("FILE");
+  command->add_option("--device", options->device, "OpenCL device, by its number in `mica devices`")
+      ->type_name("N")
+      ->capture_default_str();
+  command->add_flag("--quiet", options->quiet, "No progress");
+  command->callback([=] { *chosen = [=] { return run(*options); }; });
+}
+
+}  // namespace mica::app

@@ -1,0 +1,156 @@
+// mica eval --quantity brdf, energy and sample: what a patch BRDF answers to a table of queries.
+#include "host/app/eval_patch.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "host/app/evaluation.h"
+#include "host/app/json_file.h"
+#include "host/app/output.h"
+#include "host/app/patch_table.h"
+#include "host/base/error.h"
+#include "host/base/stopwatch.h"
+#include "host/engine/make_patch_brdf.h"
+#include "host/image/image.h"
+
+namespace mica::app {
+namespace {
+
+PatchQuantity to_quantity(const std::string& name) {
+  if (name == "energy") return PatchQuantity::energy;
+  return name == "sample" ? PatchQuantity::sample : PatchQuantity::brdf;
+}
+
+PatchBrdfSettings to_settings(const PatchEvaluation& options) {
+  PatchBrdfSettings settings;
+  const auto found = std::find(masking_names().begin(), masking_names().end(), options.masking);
+  settings.masking = static_cast<Masking>(found - masking_names().begin());
+  settings.elements = options.elements;
+  return settings;
+}
+
+float chosen_part(const std::string& part, float single, float multiple) {
+  if (part == "single") return single;
+  return part == "multiple" ? multiple : single + multiple;
+}
+
+/// The answers, row by row, and how many there are in one.
+struct Answers {
+  std::vector<float> values;
+  std::size_t columns = 0;  // 0: one number a row
+};
+
+/// Queries of `count` rows from `first`, answered.
+template <typename Query, typename Result>
+std::vector<Result> ask(PatchBrdf* brdf, std::vector<Result> (PatchBrdf::*answer)(const std::vector<Query>&),
+                        std::size_t first, std::size_t count,
+                        const std::function<Query(std::size_t)>& query) {
+  std::vector<Query> queries(count);
+  for (std::size_t n = 0; n < count; ++n) queries[n] = query(first + n);
+  return (brdf->*answer)(queries);
+}
+
+Answers answer_all(const PatchEvaluation& options, const PatchTable& table, PatchBrdf* brdf) {
+  Answers answers;
+  std::vector<float>& values = answers.values;
+  const std::string& part = options.part;
+  const auto brdf_rows = [&](std::size_t first, std::size_t count) {
+    for (const BrdfValue& value : ask<BrdfQuery, BrdfValue>(brdf, &PatchBrdf::evaluate, first, count,
+                                                            [&](std::size_t row) { return table.brdf(row); }))
+      values.push_back(chosen_part(part, value.single, value.multiple));
+  };
+  const auto energy_rows = [&](std::size_t first, std::size_t count) {
+    for (const Albedo& albedo : ask<ViewQuery, Albedo>(brdf, &PatchBrdf::energy, first, count,
+                                                       [&](std::size_t row) { return table.view(row); }))
+      values.insert(values.end(), {albedo.single, albedo.lost});
+  };
+  const auto sample_rows = [&](std::size_t first, std::size_t count) {
+    for (const BrdfSample& sample :
+         ask<SampleQuery, BrdfSample>(brdf, &PatchBrdf::sample, first, count,
+                                      [&](std::size_t row) { return table.sample(row, options.seed); }))
+      values.insert(values.end(), {sample.light.x(), sample.light.y(), sample.light.z(), sample.pdf,
+                                   chosen_part(part, sample.weight_single, sample.weight_multiple)});
+  };
+  switch (to_quantity(options.quantity)) {
+    case PatchQuantity::brdf:
+      work_in_chunks(table.size(), brdf_rows);
+      break;
+    case PatchQuantity::energy:
+      answers.columns = 2;
+      work_in_chunks(table.size(), energy_rows);
+      break;
+    case PatchQuantity::sample:
+      answers.columns = 5;
+      work_in_chunks(table.size(), sample_rows);
+      break;
+  }
+  return answers;
+}
+
+}  // namespace
+
+const std::vector<std::string>& patch_quantities() {
+  static const std::vector<std::string> names = {"brdf", "energy", "sample"};
+  return names;
+}
+
+int evaluate_patches(const PatchEvaluation& options) {
+  const std::vector<std::string>& names = patch_brdf_names();
+  if (std::find(names.begin(), names.end(), options.ndf) == names.end())
+    throw UsageError(fmt::format("--quantity {}: {} has no BRDF of its own; available: {}", options.quantity,
+                                 options.ndf, fmt::join(names, ", ")));
+  if (options.map.path.empty()) throw UsageError(fmt::format("--ndf {} needs a --map", options.ndf));
+  check_extension(options.output, {".npy"});
+  prepare_output(options.output);
+  if (!options.json.empty()) prepare_output(options.json);
+
+  const Stopwatch loading;
+  const PatchTable table(options.queries, to_quantity(options.quantity), options.roughness);
+  SurfaceReport report;
+  const Surface surface = load_map(options.map, &report);
+  table.check(surface.width(), surface.height());
+  const double load_seconds = loading.seconds();
+  const Stopwatch building;
+  Device device(options.device);
+  const std::unique_ptr<PatchBrdf> brdf = make_patch_brdf(options.ndf, device, surface, to_settings(options));
+  const double build_seconds = building.seconds();
+  const Stopwatch evaluating;
+  const Answers answers = answer_all(options, table, brdf.get());
+  const double seconds = evaluating.seconds();
+
+  write_file_atomically(options.output, to_npy(answers.values, answers.columns));
+  spdlog::info("{} rows of {} by {} on {} in {:.3g} s", table.size(), options.quantity, brdf->name(),
+               device.info().name, seconds);
+  if (options.json.empty()) return 0;
+  write_json(options.json,
+             {{"command", "eval"},
+              {"quantity", options.quantity},
+              {"evaluator", brdf->name()},
+              {"masking", options.masking},
+              {"part", options.part},
+              {"seed", options.seed},
+              {"map",
+               {{"file", options.map.path},
+                {"width", surface.width()},
+                {"height", surface.height()},
+                {"interpolation", options.map.interpolation},
+                {"notes", report.notes},
+                {"warnings", report.warnings}}},
+              {"device", describe_device(device.info())},
+              {"device_bytes", brdf->device_bytes()},
+              {"seconds",
+               {{"load", load_seconds},
+                {"build", build_seconds},
+                {"evaluate", seconds},
+                {"device", brdf->device_seconds()}}},
+              {"queries", table.size()},
+              {"queries_per_second", seconds > 0 ? static_cast<double>(table.size()) / seconds : 0.0},
+              {"output", options.output}});
+  return 0;
+}
+
+}  // namespace mica::app

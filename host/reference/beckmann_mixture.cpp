@@ -1,0 +1,166 @@
+#include "host/reference/beckmann_mixture.h"
+
+#include <tbb/parallel_for.h>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <boost/math/quadrature/gauss.hpp>
+#include <cmath>
+
+namespace mica::reference {
+namespace {
+
+constexpr double kReach = 8;     // standard deviations
+constexpr int kKernelCells = 3;  // on either side of an element's own: 8 standard deviations of its kernel
+
+double kernel_variance() {
+  return 1 / (8 * std::log(2.0));
+}
+
+/// A point under an element's position kernel along an axis: offset from the centre in spacings.
+struct Point {
+  double offset, weight;
+};
+
+/// Gauss-Legendre points of the cells under the kernel.
+const std::vector<Point>& kernel_points() {
+  static const std::vector<Point> points = [] {
+    using Rule = boost::math::quadrature::gauss<double, 6>;
+    std::vector<Point> all;
+    for (int cell = -kKernelCells; cell <= kKernelCells; ++cell) {
+      for (std::size_t n = 0; n < Rule::abscissa().size(); ++n) {
+        for (const double sign : {-1.0, 1.0}) {
+          const double offset = cell + 0.5 * sign * Rule::abscissa()[n];
+          all.push_back({offset, Rule::weights()[n] * std::exp(-0.5 * offset * offset / kernel_variance())});
+        }
+      }
+    }
+    return all;
+  }();
+  return points;
+}
+
+long wrap(long index, long period) {
+  return (index % period + period) % period;
+}
+
+Eigen::Vector2d slope_of(const Eigen::Vector2d& normal) {
+  return -normal / std::sqrt(1 - normal.squaredNorm());
+}
+
+/// Derivative of the slope by the normal on the disk, at a slope.
+Eigen::Matrix2d slope_jacobian(const Eigen::Vector2d& slope) {
+  const double w = 1 + slope.squaredNorm();
+  return -std::sqrt(w) * (Eigen::Matrix2d::Identity() + slope * slope.transpose());
+}
+
+/// The lobe of element (a, b), without roughness.
+SlopeLobe fit(const Surface& surface, int elements, long a, long b) {
+  const double h = 1.0 / elements;
+  SlopeLobe lobe;
+  if (surface.interpolation() == Interpolation::nearest) {
+    lobe.mean = slope_of(surface.texel(a / elements, b / elements));
+    return lobe;
+  }
+  Eigen::Vector2d first = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d second = Eigen::Matrix2d::Zero();
+  double weights = 0;
+  for (const Point& v : kernel_points()) {
+    for (const Point& u : kernel_points()) {
+      const double weight = u.weight * v.weight;
+      const double x = (static_cast<double>(a) + 0.5 + u.offset) * h,
+                   y = (static_cast<double>(b) + 0.5 + v.offset) * h;
+      const long i = std::lround(std::floor(x)), j = std::lround(std::floor(y));
+      const double f = x - static_cast<double>(i), g = y - static_cast<double>(j);
+      const Eigen::Vector2d slope =
+          slope_of((1 - g) * ((1 - f) * surface.texel(i, j) + f * surface.texel(i + 1, j)) +
+                   g * ((1 - f) * surface.texel(i, j + 1) + f * surface.texel(i + 1, j + 1)));
+      first += weight * slope, second += weight * slope * slope.transpose();
+      weights += weight;
+    }
+  }
+  lobe.mean = first / weights;
+  lobe.covariance = second / weights - lobe.mean * lobe.mean.transpose();
+  return lobe;
+}
+
+}  // namespace
+
+BeckmannMixture::BeckmannMixture(const Surface& surface, int elements)
+    : width_(static_cast<long>(surface.width()) * elements),
+      height_(static_cast<long>(surface.height()) * elements),
+      corner_(surface.interpolation() == Interpolation::nearest ? 0 : 0.5 * elements),
+      fitted_(width_ * height_) {
+  tbb::parallel_for(0L, height_, [&](long b) {
+    for (long a = 0; a < width_; ++a) fitted_[b * width_ + a] = fit(surface, elements, a, b);
+  });
+}
+
+std::vector<SlopeLobe> BeckmannMixture::lobes(const Footprint& footprint, double roughness) const {
+  const double k = kernel_variance();
+  const Eigen::DiagonalMatrix<double, 2> spacings(static_cast<double>(width_), static_cast<double>(height_));
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(spacings * footprint.cov_uv * spacings);
+  const Eigen::Vector2d variances = (axes.eigenvalues().array() - k).max(k);
+  const Eigen::Matrix2d cov = axes.eigenvectors() * variances.asDiagonal() * axes.eigenvectors().transpose();
+  const Eigen::Matrix2d inverse = cov.inverse();
+  const Eigen::Vector2d mean = spacings * footprint.mean_uv - Eigen::Vector2d(corner_, corner_),
+                        extent = kReach * cov.diagonal().cwiseSqrt();
+  struct Place {
+    long a, b;
+    double weight;
+  };
+  std::vector<Place> places;
+  double sum = 0;
+  for (long b = std::lround(std::floor(mean.y() - extent.y()));
+       b <= std::lround(std::ceil(mean.y() + extent.y())); ++b) {
+    for (long a = std::lround(std::floor(mean.x() - extent.x()));
+         a <= std::lround(std::ceil(mean.x() + extent.x())); ++a) {
+      const Eigen::Vector2d offset =
+          Eigen::Vector2d(static_cast<double>(a) + 0.5, static_cast<double>(b) + 0.5) - mean;
+      const double weight = std::exp(-0.5 * offset.dot(inverse * offset));
+      sum += weight;
+      if (weight > 1e-12) places.push_back({a, b, weight});
+    }
+  }
+  std::vector<SlopeLobe> lobes(places.size());
+  tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t n) {
+    lobes[n] = fitted_[wrap(places[n].b, height_) * width_ + wrap(places[n].a, width_)];
+    const Eigen::Matrix2d B = slope_jacobian(lobes[n].mean);
+    lobes[n].covariance += roughness * roughness * B * B.transpose();
+    lobes[n].weight = places[n].weight / sum;
+  });
+  return lobes;
+}
+
+double BeckmannMixture::density(const std::vector<SlopeLobe>& lobes, const Eigen::Vector2d& half_vector) {
+  const double squared_cosine = 1 - half_vector.squaredNorm();
+  if (squared_cosine <= 0) return 0;
+  const Eigen::Vector2d slope = slope_of(half_vector);
+  double sum = 0;
+  for (const SlopeLobe& lobe : lobes) {
+    const Eigen::Vector2d offset = slope - lobe.mean;
+    sum += lobe.weight * std::exp(-0.5 * offset.dot(lobe.covariance.inverse() * offset)) /
+           (2 * M_PI * std::sqrt(lobe.covariance.determinant()));
+  }
+  return sum / (squared_cosine * squared_cosine);
+}
+
+double BeckmannMixture::visible_area(const std::vector<SlopeLobe>& lobes, const Eigen::Vector3d& direction) {
+  // <o, w> / (w.g) is o_z - m.o_xy of slope m where that is positive: the mean of a Gaussian's positive part.
+  const Eigen::Vector2d across = direction.head<2>();
+  double sum = 0;
+  for (const SlopeLobe& lobe : lobes) {
+    const double mean = direction.z() - lobe.mean.dot(across);
+    const double sigma = std::sqrt(across.dot(lobe.covariance * across));
+    if (!(sigma > 0)) {
+      sum += lobe.weight * std::max(mean, 0.0);
+      continue;
+    }
+    const double z = mean / sigma;
+    sum += lobe.weight * (mean * 0.5 * std::erfc(-z / std::sqrt(2.0)) +
+                          sigma * std::exp(-0.5 * z * z) / std::sqrt(2 * M_PI));
+  }
+  return sum;
+}
+
+}  // namespace mica::reference
