@@ -10,6 +10,7 @@
 #include "host/app/interrupt.h"
 #include "host/app/json_file.h"
 #include "host/app/output.h"
+#include "host/app/selftest_tables.h"
 #include "host/engine/accuracy.h"
 #include "host/engine/make_evaluator.h"
 #include "host/reference/gaussian_mixture.h"
@@ -123,7 +124,7 @@ nlohmann::json to_json(const std::vector<Check>& checks) {
   return list;
 }
 
-int run(int device_index, const std::string& json_path) {
+int run(int device_index, double evaluations, const std::string& json_path) {
   if (!json_path.empty()) prepare_output(json_path);
   Device device(device_index);
   fmt::print("device {}: {}, {}\n\n", device_index, device.info().name, device.info().version);
@@ -135,17 +136,25 @@ int run(int device_index, const std::string& json_path) {
     checks.insert(checks.end(), more.begin(), more.end());
   };
   take({check_struct_layout(&device)});
+  const std::vector<FunctionError> arithmetic = measure_arithmetic(&device);
+  take(arithmetic_checks(arithmetic));
   take(check_special_functions(&device));
   take(check_evaluator("triangles", &device));
   take(check_gaussians(&device));
 
+  print_arithmetic(arithmetic);
+  const std::vector<HardResult> hard = print_hard_cases(&device, static_cast<std::uint64_t>(evaluations));
+
   const bool failed =
-      std::any_of(checks.begin(), checks.end(), [](const Check& check) { return check.failed(); });
+      std::any_of(checks.begin(), checks.end(), [](const Check& check) { return check.failed(); }) ||
+      std::any_of(hard.begin(), hard.end(), [](const HardResult& r) { return r.outcome == Outcome::broken; });
   fmt::print("\n{}\n", failed ? "FAIL: do not trust this device with this driver" : "PASS");
   if (!json_path.empty())
     write_json(json_path, {{"command", "selftest"},
                            {"device", describe_device(device.info())},
                            {"checks", to_json(checks)},
+                           {"arithmetic", arithmetic_json(arithmetic)},
+                           {"hard_cases", hard_cases_json(hard)},
                            {"pass", !failed}});
   return static_cast<int>(failed ? ExitCode::device : ExitCode::done);
 }
@@ -155,6 +164,7 @@ int run(int device_index, const std::string& json_path) {
 void add_selftest(CLI::App& app, Command* chosen) {
   auto device_index = std::make_shared<int>(0);
   auto json_path = std::make_shared<std::string>();
+  auto evaluations = std::make_shared<double>(0);
   CLI::App* command =
       app.add_subcommand("selftest", "Checks the accuracy of a device's arithmetic and of every kernel");
   command->footer(
@@ -167,7 +177,12 @@ void add_selftest(CLI::App& app, Command* chosen) {
       ->type_name("N")
       ->capture_default_str();
   command->add_option("--json", *json_path, "Writes the checks as JSON")->type_name("FILE");
-  command->callback([=] { *chosen = [=] { return run(*device_index, *json_path); }; });
+  command
+      ->add_option("--evaluations", *evaluations,
+                   "Asks the hard cases on, until so many answers were looked at: 1e8 takes an hour or so")
+      ->type_name("N")
+      ->check(CLI::Range(0.0, 1e12));
+  command->callback([=] { *chosen = [=] { return run(*device_index, *evaluations, *json_path); }; });
 }
 
 }  // namespace mica::app

@@ -107,23 +107,36 @@ void Accuracy::add(const Accuracy& other) {
 
 Accuracy compare(Evaluator* evaluator, const reference::Oracle& oracle, const Surface& surface,
                  std::vector<std::vector<Query>> probes) {
+  const References densities = [&](const std::vector<Query>& queries) {
+    std::vector<double> answers;
+    for (const reference::OracleResult& result : oracle.evaluate(queries)) answers.push_back(result.density);
+    return answers;
+  };
+  const auto promise = [](double roughness) { return Promise{relative_bound(roughness), kPeakBound}; };
+  return compare(evaluator, densities, promise, surface, std::move(probes));
+}
+
+Accuracy compare(Evaluator* evaluator, const References& references,
+                 const std::function<Promise(double roughness)>& promise, const Surface& surface,
+                 std::vector<std::vector<Query>> probes) {
   add_brightest(evaluator, surface, &probes);
   const std::vector<Query> queries = joined(probes);
   const std::vector<float> densities = evaluator->evaluate(queries);
-  const std::vector<reference::OracleResult> references = oracle.evaluate(queries);
+  const std::vector<double> expected = references(queries);
 
   Accuracy accuracy;
   accuracy.queries = queries.size();
   std::size_t first = 0;
   for (const std::vector<Query>& probe : probes) {
     const std::size_t end = first + probe.size();
-    double peak = 0;
-    for (std::size_t n = first; n < end; ++n) peak = std::max(peak, references[n].density);
+    const double peak = *std::max_element(expected.begin() + static_cast<long>(first),
+                                          expected.begin() + static_cast<long>(end));
     for (std::size_t n = first; n < end; ++n) {
-      const double density = densities[n], reference = references[n].density;
-      const double promise = relative_bound(queries[n].roughness) * reference + kPeakBound * peak;
-      const double error = std::abs(density - reference) / promise;
-      if (error > accuracy.worst) accuracy = {queries.size(), error, queries[n], density, reference};
+      const Promise promised = promise(queries[n].roughness);
+      const double difference = std::abs(densities[n] - expected[n]);
+      const double allowed = promised.relative * expected[n] + promised.of_peak * peak;
+      const double error = difference == 0 ? 0 : difference / allowed;
+      if (error > accuracy.worst) accuracy = {queries.size(), error, queries[n], densities[n], expected[n]};
     }
     first = end;
   }

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "host/base/query.h"
@@ -26,7 +27,12 @@ Footprint make_footprint(const Surface& surface, const Eigen::Vector2d& mean_uv,
 std::vector<Query> probe(const Surface& surface, const Footprint& footprint, double roughness,
                          int half_vectors, std::uint64_t seed);
 
-/// How far an evaluator lies from the oracle, in units of what it promises.
+/// A promise of another form: |D - ref| <= relative * ref + of_peak * peak.
+struct Promise {
+  double relative = 1e-4, of_peak = kPeakBound;
+};
+
+/// How far an evaluator lies from its reference, in units of what it promises.
 struct Accuracy {
   std::size_t queries = 0;
   double worst = 0;  ///< largest |D - ref| / promised error; above 1 the promise is broken
@@ -41,6 +47,12 @@ struct Accuracy {
 /// footprint as the evaluator sees them.
 /// @param probes each of one footprint. Throws what the two throw.
 Accuracy compare(Evaluator* evaluator, const reference::Oracle& oracle, const Surface& surface,
+                 std::vector<std::vector<Query>> probes);
+
+/// The same with another reference and what is promised against it at a roughness.
+using References = std::function<std::vector<double>(const std::vector<Query>&)>;
+Accuracy compare(Evaluator* evaluator, const References& references,
+                 const std::function<Promise(double roughness)>& promise, const Surface& surface,
                  std::vector<std::vector<Query>> probes);
 
 }  // namespace mica

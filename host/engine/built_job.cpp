@@ -6,7 +6,9 @@
 
 #include "host/base/stopwatch.h"
 #include "host/engine/glint_plan.h"
+#include "host/engine/grid_brdf.h"
 #include "host/engine/make_evaluator.h"
+#include "host/engine/ndf_brdf.h"
 
 namespace mica {
 namespace {
@@ -37,8 +39,19 @@ BuiltJob::BuiltJob(const Job& job, const Plan& plan, Device& device)
     } else {
       evaluators_.push_back(make_evaluator(planned.evaluator, device, *surfaces_[n]));
     }
+    if (plan.gathers_light) brdfs_.push_back(make_brdf(n, device));
   }
   build_seconds_ = watch.seconds();
+}
+
+std::unique_ptr<PatchBrdf> BuiltJob::make_brdf(std::size_t n, Device& device) const {
+  const PlannedEvaluator& planned = plan_.evaluators[n];
+  if (planned.glints_material >= 0)
+    return std::make_unique<GridBrdf>(device, *job_.scene.materials[planned.glints_material].glints);
+  // Of the densities, that of triangles alone is that of the surface's normals, and not an approximation.
+  const auto draws =
+      planned.evaluator == "triangles" ? NdfBrdf::Draws::surface_normals : NdfBrdf::Draws::smooth_lobe;
+  return std::make_unique<NdfBrdf>(*evaluators_[n], *surfaces_[n], draws);
 }
 
 std::vector<std::optional<Surface>> BuiltJob::make_surfaces() {
@@ -74,7 +87,8 @@ Scene BuiltJob::make_scene() {
                                        : masking_alpha(*surfaces_[evaluator], material.roughness));
     }
   }
-  Scene scene(job_.scene, job_.image.width, job_.image.height, job_.image.subpixels, alphas);
+  Scene scene(job_.scene, job_.image.width, job_.image.height, job_.image.subpixels, alphas,
+              {plan_.gathers_light, {}});
   scene_seconds_ = watch.seconds();
   return scene;
 }

@@ -8,6 +8,7 @@
 #include "host/device/device.h"
 #include "host/engine/evaluator.h"
 #include "host/engine/grid_evaluator.h"
+#include "host/engine/patch_brdf.h"
 #include "host/engine/plan.h"
 #include "host/job/job.h"
 #include "host/scene/scene.h"
@@ -25,6 +26,7 @@ class BuiltJob {
   const Plan& plan() const { return plan_; }
   const Scene& scene() const { return scene_; }
   Evaluator& evaluator(std::size_t n) const { return *evaluators_[n]; }  ///< by PlannedEvaluator
+  PatchBrdf& brdf(std::size_t n) const { return *brdfs_[n]; }            ///< the same; if light is gathered
   std::vector<const Surface*> surfaces() const;  ///< by PlannedEvaluator; null without a map
   GridEvaluator* glints(std::size_t n) const { return glints_[n]; }  ///< the same; null with a map
 
@@ -40,6 +42,7 @@ class BuiltJob {
  private:
   std::vector<std::optional<Surface>> make_surfaces();
   Scene make_scene();
+  std::unique_ptr<PatchBrdf> make_brdf(std::size_t n, Device& device) const;
 
   const Job& job_;
   const Plan& plan_;
@@ -49,6 +52,7 @@ class BuiltJob {
   Scene scene_;
   std::vector<std::unique_ptr<Evaluator>> evaluators_;
   std::vector<GridEvaluator*> glints_;  // those of evaluators_ that are
+  std::vector<std::unique_ptr<PatchBrdf>> brdfs_;
 };
 
 /// The densities of a block of traced rows, on their way from all evaluators.

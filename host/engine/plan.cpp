@@ -47,9 +47,9 @@ PlannedEvaluator plan_evaluator(const Job& job, int surface_index, const std::st
 }
 
 /// Index of the evaluator that a material needs, planned now if it is the first to need it.
-int evaluator_for(const Job& job, const MaterialDescription& material,
-                  std::vector<PlannedEvaluator>* planned) {
-  if (material.glints) return plan_glints(job.scene.materials, material, planned);
+int evaluator_for(const Job& job, const MaterialDescription& material, Plan* plan) {
+  std::vector<PlannedEvaluator>* planned = &plan->evaluators;
+  if (material.glints) return plan_glints(job.scene.materials, material, plan);
   const auto surface = std::find_if(job.surfaces.begin(), job.surfaces.end(),
                                     [&](const SurfaceDescription& s) { return s.name == material.surface; });
   const int surface_index = static_cast<int>(surface - job.surfaces.begin());
@@ -84,19 +84,22 @@ double mebibytes(std::size_t bytes) {
 
 Plan make_plan(const Job& job) {
   Plan plan;
+  plan.gathers_light = !job.scene.environments.empty() || job.image.max_bounces > 1;
+  if (plan.gathers_light) plan.samples = job.image.samples, plan.max_bounces = job.image.max_bounces;
   std::set<std::string> used;
   for (const ShapeDescription& shape : job.scene.shapes) {
     used.insert(shape.material);
     for (const PartMaterial& part : shape.parts) used.insert(part.material);
   }
   for (const MaterialDescription& material : job.scene.materials)
-    plan.evaluator_of_material.push_back(
-        used.count(material.name) ? evaluator_for(job, material, &plan.evaluators) : -1);
+    plan.evaluator_of_material.push_back(used.count(material.name) ? evaluator_for(job, material, &plan)
+                                                                   : -1);
 
   plan.channels = channels_for(job.image.aovs);
   plan.queries_a_batch = kQueriesABatch;
   const std::size_t queries_a_row = static_cast<std::size_t>(job.image.width) * job.image.subpixels *
-                                    job.image.subpixels * std::max<std::size_t>(job.scene.lights.size(), 1);
+                                    job.image.subpixels *
+                                    std::max<std::size_t>(job.scene.lights.size() + 2 * plan.samples, 1);
   plan.rows_a_block =
       static_cast<int>(std::clamp<std::size_t>(kQueriesABatch / queries_a_row, 1, job.image.height));
 
@@ -125,6 +128,11 @@ std::string describe(const Plan& plan) {
                         e.evaluator, e.surface, e.width, e.height, name_of(e.interpolation),
                         fmt::join(e.materials, ", "), mebibytes(e.device_bytes), e.kernel);
   }
+  if (plan.gathers_light)
+    text += fmt::format(
+        "light from all around: 2 x {} directions a footprint, by the light and by the material, up to "
+        "{} bounces\n",
+        plan.samples, plan.max_bounces);
   text += fmt::format("channels {}\n", fmt::join(plan.channels, " "));
   text += fmt::format("blocks of {} rows, batches of at most {} queries\n", plan.rows_a_block,
                       plan.queries_a_batch);

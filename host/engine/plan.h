@@ -22,11 +22,17 @@ struct PlannedEvaluator {
   std::vector<std::string> materials;  ///< that use it
 };
 
+/// Which draws of directions estimate the light from all around; either alone is right too, and noisier.
+enum class Techniques { both, lights, brdf };
+
 /// All that a job needs and nothing else. Surfaces and materials that no shape uses do not appear.
 struct Plan {
   std::vector<PlannedEvaluator> evaluators;
-  std::vector<int> evaluator_of_material;        ///< by index of SceneDescription::materials; -1: not used
-  std::vector<std::string> channels;             ///< of the image, in order
+  std::vector<int> evaluator_of_material;  ///< by index of SceneDescription::materials; -1: not used
+  std::vector<std::string> channels;       ///< of the image, in order
+  bool gathers_light = false;              ///< from all around: `samples` a footprint
+  int samples = 0, max_bounces = 1;              ///< as the job asks for
+  Techniques techniques = Techniques::both;
   int rows_a_block = 0;                          ///< image rows that are traced and evaluated together
   std::size_t queries_a_batch = 0;               ///< of one kernel launch, at most
   std::size_t host_bytes = 0, device_bytes = 0;  ///< estimates of the whole

@@ -9,6 +9,7 @@
 #include "host/base/version.h"
 #include "host/engine/built_job.h"
 #include "host/engine/film.h"
+#include "host/engine/gather_light.h"
 
 namespace mica {
 namespace {
@@ -40,6 +41,9 @@ void render_rows(const BuiltJob& built, const RenderProgress& progress, AuditSam
       const Stopwatch tracing;
       TracedRows rows = built.scene().trace(row, std::min(rows_a_block, image.height - row));
       result->seconds.trace += tracing.seconds();
+      const Stopwatch gathering;
+      result->queries += add_lit_brdfs(built, &rows) + gather_light(built, &rows);
+      result->seconds.gather += gathering.seconds();
       next.emplace(std::move(rows), built);
     }
     if (in_flight) {

@@ -13,9 +13,11 @@
 namespace mica {
 
 /// Wall-clock seconds by phase. `render` is tracing and evaluating together, which overlap; `trace` and
-/// `wait` are the host's shares of it: tracing rows, and waiting for densities that were not ready.
+/// `wait` are the host's shares of it: tracing rows, and waiting for densities that were not ready; `gather`
+/// is gathering light from all around, on both.
 struct PhaseSeconds {
-  double surfaces = 0, scene = 0, build = 0, render = 0, trace = 0, wait = 0, audit = 0, total = 0;
+  double surfaces = 0, scene = 0, build = 0, render = 0, trace = 0, gather = 0, wait = 0, audit = 0;
+  double total = 0;
 };
 
 /// A finished image and what was done to make it.

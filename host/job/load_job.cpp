@@ -52,6 +52,8 @@ ImageSettings read_image(TableReader& table) {
   table.read("width", image.width, closed(1, 16384));
   table.read("height", image.height, closed(1, 16384));
   table.read("subpixels", image.subpixels, closed(1, 16));
+  table.read("samples", image.samples, closed(1, 65536));
+  table.read("max_bounces", image.max_bounces, closed(1, 64));
   const std::vector<std::string_view> aovs = {"ndf", "uv", "footprint", "normal", "queries"};
   table.read("aovs", image.aovs, aovs);
   table.read("exposure", image.exposure, closed(-32, 32));

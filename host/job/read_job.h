@@ -25,7 +25,7 @@ std::vector<MaterialDescription> read_materials(TableReader& job,
 void read_glints(TableReader& material, MaterialDescription& description);
 
 /// All `[[light]]`.
-std::vector<LightDescription> read_lights(TableReader& job);
+void read_lights(TableReader& job, SceneDescription& scene);
 
 /// `[camera]`, `[[shape]]`, `[[light]]`, `[background]` and the materials.
 SceneDescription read_scene(TableReader& job, const std::vector<SurfaceDescription>& surfaces);

@@ -1,4 +1,4 @@
-#include <optional>
+#include <functional>
 
 #include "host/job/read_job.h"
 
@@ -40,35 +40,58 @@ void read_values(TableReader& light, DiskLight& disk) {
   light.read("intensity", disk.intensity, power);
 }
 
-/// A light of the kind that "type" names; nothing, with a report, when that is not clear.
-std::optional<LightDescription> read_kind(TableReader& light) {
-  const LightDescription point = PointLight{}, directional = DirectionalLight{}, sphere = SphereLight{},
-                         disk = DiskLight{};
-  const LightDescription* kind = nullptr;
-  light.require("type", "one of: point, directional, sphere, disk");
-  light.read("type", kind,
-             {{"point", &point}, {"directional", &directional}, {"sphere", &sphere}, {"disk", &disk}});
-  return kind ? std::optional<LightDescription>(*kind) : std::nullopt;
+LightDescription make_lamp(const LightDescription& kind, TableReader& light) {
+  LightDescription lamp = kind;
+  const char* place = std::holds_alternative<DirectionalLight>(lamp) ? "direction" : "position";
+  light.require(place, "an array of 3 numbers");
+  std::visit([&](auto& described) { read_values(light, described); }, lamp);
+  return lamp;
 }
 
-LightDescription read_light(TableReader& light) {
-  std::optional<LightDescription> kind = read_kind(light);
-  if (!kind) {
+EnvironmentLight make_environment(TableReader& light) {
+  EnvironmentLight environment;
+  light.require("image", "a lat-long EXR or HDR image");
+  light.read_file("image", environment.path);
+  light.read("scale", environment.radiance, power);
+  light.read("rotation", environment.rotation_degrees, closed(-360, 360));
+  return environment;
+}
+
+EnvironmentLight make_furnace(TableReader& light) {
+  EnvironmentLight furnace;
+  light.read("radiance", furnace.radiance, power);
+  return furnace;
+}
+
+/// A light of the kind that "type" names; nothing, with a report, when that is not clear.
+void read_light(TableReader& light, SceneDescription& scene) {
+  using Make = std::function<void()>;
+  const auto lamp = [&](const LightDescription& kind) {
+    return Make([&light, &scene, kind] { scene.lights.push_back(make_lamp(kind, light)); });
+  };
+  const auto far = [&](EnvironmentLight (*make)(TableReader&)) {
+    return Make([&light, &scene, make] { scene.environments.push_back(make(light)); });
+  };
+  Make make;
+  light.require("type", "one of: point, directional, sphere, disk, environment, furnace");
+  light.read("type", make,
+             {{"point", lamp(PointLight{})},
+              {"directional", lamp(DirectionalLight{})},
+              {"sphere", lamp(SphereLight{})},
+              {"disk", lamp(DiskLight{})},
+              {"environment", far(make_environment)},
+              {"furnace", far(make_furnace)}});
+  if (make) {
+    make();
+  } else {
     light.accept_any_key();
-    return PointLight{};
   }
-  const char* place = std::holds_alternative<DirectionalLight>(*kind) ? "direction" : "position";
-  light.require(place, "an array of 3 numbers");
-  std::visit([&](auto& described) { read_values(light, described); }, *kind);
-  return *kind;
 }
 
 }  // namespace
 
-std::vector<LightDescription> read_lights(TableReader& job) {
-  std::vector<LightDescription> lights;
-  job.read_table_array("light", [&](TableReader& light) { lights.push_back(read_light(light)); });
-  return lights;
+void read_lights(TableReader& job, SceneDescription& scene) {
+  job.read_table_array("light", [&](TableReader& light) { read_light(light, scene); });
 }
 
 }  // namespace mica

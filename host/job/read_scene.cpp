@@ -115,7 +115,8 @@ SceneDescription read_scene(TableReader& job, const std::vector<SurfaceDescripti
   for (const MaterialDescription& material : scene.materials) material_names.push_back(material.name);
   job.read_table_array(
       "shape", [&](TableReader& table) { read_shape(table, scene.shapes.emplace_back(), material_names); });
-  scene.lights = read_lights(job);
+  read_lights(job, scene);
+  scene.background.is_environment = !scene.environments.empty() && !job.has("background");
   job.read_table("background", [&](TableReader& table) { read_background(table, scene.background); });
   return scene;
 }

@@ -31,9 +31,14 @@ ordered_json to_json(const Plan& plan) {
                           {"host_bytes", e.host_bytes},
                           {"device_bytes", e.device_bytes}});
   }
-  return {{"evaluators", evaluators},          {"channels", plan.channels},
-          {"rows_a_block", plan.rows_a_block}, {"queries_a_batch", plan.queries_a_batch},
-          {"host_bytes", plan.host_bytes},     {"device_bytes", plan.device_bytes}};
+  return {{"evaluators", evaluators},
+          {"channels", plan.channels},
+          {"gathers_light", plan.gathers_light},
+          {"samples", plan.samples},
+          {"rows_a_block", plan.rows_a_block},
+          {"queries_a_batch", plan.queries_a_batch},
+          {"host_bytes", plan.host_bytes},
+          {"device_bytes", plan.device_bytes}};
 }
 
 ordered_json to_json(const Job& job) {
@@ -64,8 +69,9 @@ std::string render_json(const Job& job, const DeviceInfo& device, const RenderRe
   json["device"] = to_json(device);
   json["plan"] = to_json(result.plan);
   json["device_bytes"] = result.device_bytes;
-  json["seconds"] = {{"surfaces", s.surfaces}, {"scene", s.scene}, {"build", s.build}, {"render", s.render},
-                     {"trace", s.trace},       {"wait", s.wait},   {"audit", s.audit}, {"total", s.total}};
+  json["seconds"] = {{"surfaces", s.surfaces}, {"scene", s.scene}, {"build", s.build},
+                     {"render", s.render},     {"trace", s.trace}, {"gather", s.gather},
+                     {"wait", s.wait},         {"audit", s.audit}, {"total", s.total}};
   json["queries"] = result.queries;
   json["device_seconds"] = result.device_seconds;
   json["queries_per_second"] = rate(result.queries, s.render);
@@ -85,9 +91,8 @@ std::string render_summary(const DeviceInfo& device, const RenderResult& result)
   text += fmt::format("memory    {:.1f} MiB of structures on the device\n", mebibytes(result.device_bytes));
   text += fmt::format(
       "seconds   {:.2f} in all: surfaces {:.2f}, scene {:.2f}, build {:.2f}, render {:.2f} (of it tracing "
-      "{:.2f}, "
-      "waiting for the device {:.2f}), audit {:.2f}\n",
-      s.total, s.surfaces, s.scene, s.build, s.render, s.trace, s.wait, s.audit);
+      "{:.2f}, gathering light {:.2f}, waiting for the device {:.2f}), audit {:.2f}\n",
+      s.total, s.surfaces, s.scene, s.build, s.render, s.trace, s.gather, s.wait, s.audit);
   text +=
       fmt::format("queries   {} at {:.3f} million/s ({:.3f} in the kernels alone)\n", result.queries,
                   1e-6 * rate(result.queries, s.render), 1e-6 * rate(result.queries, result.device_seconds));

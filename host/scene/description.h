@@ -123,10 +123,19 @@ struct DiskLight {  ///< one-sided, as bright from every angle
 /// `[[light]]`
 using LightDescription = std::variant<PointLight, DirectionalLight, SphereLight, DiskLight>;
 
+/// `[[light]]` that shines from all around and from far away: `environment` is a lat-long image, oriented as
+/// that of Background; `furnace`, without a path, is the same radiance in all directions.
+struct EnvironmentLight {
+  std::string path;
+  Color radiance{1, 1, 1};      ///< W/(m^2 sr); what the image is multiplied with
+  double rotation_degrees = 0;  ///< of the image about +z, from +x towards +y
+};
+
 /// What rays that hit nothing see: a colour, or a lat-long image when `path` is not empty.
 struct BackgroundDescription {
   Color color{0, 0, 0};
   std::string path;
+  bool is_environment = false;  ///< the scene's environment lights instead
 };
 
 struct SceneDescription {
@@ -134,6 +143,7 @@ struct SceneDescription {
   std::vector<MaterialDescription> materials;
   std::vector<ShapeDescription> shapes;
   std::vector<LightDescription> lights;
+  std::vector<EnvironmentLight> environments;
   BackgroundDescription background;
 };
 

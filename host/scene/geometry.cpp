@@ -172,6 +172,11 @@ void commit(RTCScene scene) {
 
 }  // namespace
 
+Ray ray_from(const Hit& hit, const Eigen::Vector3d& direction) {
+  const double side = direction.dot(hit.face_normal) < 0 ? -1 : 1;
+  return {hit.position + side * hit.error * hit.face_normal, direction};
+}
+
 struct Geometry::Implementation {
   DeviceHandle device;
   SceneHandle scene;
@@ -272,9 +277,8 @@ std::optional<Hit> Geometry::intersect(const Ray& ray) const {
 }
 
 bool Geometry::occluded(const Hit& hit, const Eigen::Vector3d& direction, double distance) const {
-  const double side = direction.dot(hit.face_normal) < 0 ? -1 : 1;
   RTCRay ray;
-  set_ray(&ray, hit.position + side * hit.error * hit.face_normal, direction, distance);
+  set_ray(&ray, ray_from(hit, direction).origin, direction, distance);
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   rtcOccluded1(implementation_->scene.get(), &context, &ray);

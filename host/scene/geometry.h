@@ -10,6 +10,9 @@
 
 namespace mica {
 
+/// A ray that leaves a hit along `direction`, on the side of the surface to which that points.
+Ray ray_from(const Hit& hit, const Eigen::Vector3d& direction);
+
 /// All shapes of a scene, ready to be hit. Immutable after construction; used from any number of threads.
 /// Shapes whose descriptions differ in nothing but their placement and materials are built once.
 class Geometry {

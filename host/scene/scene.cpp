@@ -80,6 +80,26 @@ struct IsUsableLight {
   }
 };
 
+/// What the rows of a block collect, each for itself.
+struct RowQueries {
+  std::vector<GlintQuery> glints;
+  std::vector<LitPoint> points;
+  std::vector<LitBrdf> lit;
+
+  std::size_t size() const { return glints.size() + lit.size(); }
+};
+
+template <typename Item>
+void join(std::vector<RowQueries>* rows, std::vector<Item> RowQueries::*part, std::vector<Item>* all) {
+  std::size_t total = 0;
+  for (const RowQueries& row : *rows) total += (row.*part).size();
+  all->reserve(total);
+  for (RowQueries& row : *rows) {
+    all->insert(all->end(), (row.*part).begin(), (row.*part).end());
+    std::vector<Item>().swap(row.*part);
+  }
+}
+
 void check_lights(const std::vector<LightDescription>& lights) {
   for (std::size_t i = 0; i < lights.size(); ++i)
     if (!std::visit(IsUsableLight{}, lights[i]))
@@ -131,7 +151,8 @@ class PixelMeans {
 };
 
 TracedRows empty_rows(int first_row, int row_count, int width) {
-  TracedRows rows{first_row, row_count, {}, {}, {}, {}, {}, {}};
+  TracedRows rows;
+  rows.first_row = first_row, rows.row_count = row_count;
   const std::size_t pixels = static_cast<std::size_t>(row_count) * static_cast<std::size_t>(width);
   rows.radiance.assign(pixels, Eigen::Vector3f::Zero());
   rows.uv.assign(pixels, Eigen::Vector2f::Zero());
@@ -149,15 +170,26 @@ namespace {
 struct StaticScene {
   Geometry geometry;
   Background background;
+  Environment environment;
+  bool shows_environment;  ///< where rays hit nothing
   std::vector<MaterialDescription> materials;
   std::vector<std::optional<CoatInterface>> coats;  ///< of each material
   PartMaterials part_materials;
   std::vector<std::optional<GlintMaterial>> glints;  ///< of each material that a shape has
+
+  Color far_radiance(const Eigen::Vector3d& direction) const {
+    return shows_environment ? environment.radiance(direction) : background.radiance(direction);
+  }
 };
 
 StaticScene make_static_scene(const SceneDescription& description) {
-  StaticScene made{
-      Geometry(description.shapes), Background(description.background), description.materials, {}, {}, {}};
+  StaticScene made{Geometry(description.shapes),
+                   Background(description.background),
+                   Environment(description.environments),
+                   description.background.is_environment,
+                   description.materials,
+                   {},
+                   {}};
   for (const MaterialDescription& material : description.materials)
     made.coats.push_back(material.coat ? std::optional<CoatInterface>(*material.coat) : std::nullopt);
   made.part_materials = materials_of_parts(description, made.geometry);
@@ -171,7 +203,7 @@ StaticScene make_static_scene(const SceneDescription& description) {
 
 /// One of a pixel's footprints.
 struct Subpixel {
-  std::uint32_t pixel;           ///< from the first traced row
+  std::uint32_t pixel, index;    ///< as in LitPoint
   Eigen::Vector2d light_sample;  ///< of shadow rays, see light_ray
 };
 
@@ -182,31 +214,67 @@ struct Scene::Implementation {
   PinholeCamera camera;
   std::vector<double> masking_alpha;  ///< of each material
   std::vector<LightDescription> lights;
+  LightGathering gathering;
   int width, height, subpixels;
 
   /// Fills pixels [row * width, (row + 1) * width) of `rows`, and `queries`.
-  void trace_row(int row, TracedRows* rows, std::vector<GlintQuery>* queries) const;
+  void trace_row(int row, TracedRows* rows, RowQueries* queries) const;
   Color shade(const CameraRay& ray, const Hit& hit, const Subpixel& subpixel, PixelMeans* means,
-              std::vector<GlintQuery>* queries) const;
+              RowQueries* queries) const;
+  LitBrdf lit_brdf(const GlintQuery& query, const LitPoint& point, const Illumination& incident) const;
 };
 
 Scene::Scene(const SceneDescription& description, int width, int height, int subpixels,
-             std::vector<double> masking_alpha) {
+             std::vector<double> masking_alpha, LightGathering gathering) {
   if (width < 1 || height < 1) throw UsageError(fmt::format("image of {} x {} pixels", width, height));
   if (subpixels < 1 || subpixels > 16)
     throw UsageError(fmt::format("subpixels: found {}, expected 1 to 16", subpixels));
   complete(&masking_alpha, description.materials.size());
   check_lights(description.lights);
+  gathering.patch_materials.resize(description.materials.size(), false);
   const PinholeCamera camera(description.camera, width, height);
-  implementation_.reset(
-      new Implementation{std::make_shared<const StaticScene>(make_static_scene(description)), camera,
-                         std::move(masking_alpha), description.lights, width, height, subpixels});
+  implementation_.reset(new Implementation{
+      std::make_shared<const StaticScene>(make_static_scene(description)), camera, std::move(masking_alpha),
+      description.lights, std::move(gathering), width, height, subpixels});
 }
 
 Scene::Scene(std::unique_ptr<Implementation> implementation) : implementation_(std::move(implementation)) {}
 
 Scene::~Scene() = default;
 Scene::Scene(Scene&&) noexcept = default;
+
+const Geometry& Scene::geometry() const {
+  return implementation_->shared->geometry;
+}
+const Environment& Scene::environment() const {
+  return implementation_->shared->environment;
+}
+const std::vector<LightDescription>& Scene::lights() const {
+  return implementation_->lights;
+}
+const std::vector<MaterialDescription>& Scene::materials() const {
+  return implementation_->shared->materials;
+}
+std::uint32_t Scene::material_of(const Hit& hit) const {
+  return implementation_->shared->part_materials[hit.shape][hit.part];
+}
+double Scene::masking_alpha(std::uint32_t material) const {
+  return implementation_->masking_alpha[material];
+}
+
+LitBrdf Scene::Implementation::lit_brdf(const GlintQuery& query, const LitPoint& point,
+                                        const Illumination& incident) const {
+  LitBrdf lit;
+  lit.query = {query.query.footprint, point.frame.to_local(point.to_eye),
+               point.frame.to_local(incident.direction), query.query.roughness};
+  lit.pixel = query.pixel;
+  lit.material = query.material;
+  const Color irradiance = incident.irradiance / (subpixels * subpixels);
+  const BounceFresnel fresnel(shared->materials[query.material].specular, lit.query.view, lit.query.light);
+  lit.weight_single = fresnel.single.cwiseProduct(irradiance).cast<float>();
+  lit.weight_multiple = fresnel.multiple.cwiseProduct(irradiance).cast<float>();
+  return lit;
+}
 
 Scene Scene::with_view(const CameraDescription& camera, const std::vector<LightDescription>& lights,
                        const std::vector<double>& masking_alpha) const {
@@ -216,11 +284,11 @@ Scene Scene::with_view(const CameraDescription& camera, const std::vector<LightD
   check_lights(lights);
   return Scene(std::unique_ptr<Implementation>(
       new Implementation{self.shared, PinholeCamera(camera, self.width, self.height), std::move(alphas),
-                         lights, self.width, self.height, self.subpixels}));
+                         lights, self.gathering, self.width, self.height, self.subpixels}));
 }
 
 Color Scene::Implementation::shade(const CameraRay& ray, const Hit& hit, const Subpixel& subpixel,
-                                   PixelMeans* means, std::vector<GlintQuery>* queries) const {
+                                   PixelMeans* means, RowQueries* queries) const {
   const std::uint32_t material_index = shared->part_materials[hit.shape][hit.part];
   const MaterialDescription& material = shared->materials[material_index];
   const std::optional<CoatInterface>& coat = shared->coats[material_index];
@@ -241,6 +309,10 @@ Color Scene::Implementation::shade(const CameraRay& ray, const Hit& hit, const S
   std::vector<GlintPlace> places = {{query.query.footprint, frame.x, frame.y, material.roughness, {}}};
   if (glints) places = glints->places(ray, hit, frame, filter_sigma_subpixels / subpixels);
 
+  const LitPoint point{hit,           frame, to_eye, places.front().footprint, subpixel.pixel, subpixel.index,
+                       material_index};
+  if (gathering.points) queries->points.push_back(point);
+
   for (const LightDescription& light : lights) {
     const Illumination incident = illuminate(light, hit.position);
     if (!(incident.irradiance.maxCoeff() > 0)) continue;
@@ -252,6 +324,12 @@ Color Scene::Implementation::shade(const CameraRay& ray, const Hit& hit, const S
 
     const LobesSeen seen = see_lobes(material, coat, alpha, frame.z, to_eye, incident);
     smooth += seen.smooth.cwiseProduct(incident.irradiance);
+    if (gathering.patch_materials[material_index]) {
+      query.query.half_vector = frame.on_disk(seen.half_vector);
+      query.query.roughness = seen.roughness;
+      queries->lit.push_back(lit_brdf(query, point, incident));
+      continue;
+    }
     const Color weight = glints ? glints->weight(hit, places.front(), frame, to_eye, seen, incident.direction)
                                 : seen.glint_weight;
     query.weight = weight.cwiseProduct(incident.irradiance / (subpixels * subpixels)).cast<float>();
@@ -261,13 +339,13 @@ Color Scene::Implementation::shade(const CameraRay& ray, const Hit& hit, const S
       query.query.half_vector = {seen.half_vector.dot(place.x), seen.half_vector.dot(place.y)};
       query.query.roughness = glints ? glints->microroughness(place, seen) : seen.roughness;
       query.glints = place.point;
-      queries->push_back(query);
+      queries->glints.push_back(query);
     }
   }
   return smooth;
 }
 
-void Scene::Implementation::trace_row(int row, TracedRows* rows, std::vector<GlintQuery>* queries) const {
+void Scene::Implementation::trace_row(int row, TracedRows* rows, RowQueries* queries) const {
   const double step = 1.0 / subpixels;
   const auto first_pixel = static_cast<std::uint64_t>(rows->first_row) * static_cast<std::uint64_t>(width);
   for (int column = 0; column < width; ++column) {
@@ -282,9 +360,9 @@ void Scene::Implementation::trace_row(int row, TracedRows* rows, std::vector<Gli
       const double y = rows->first_row + row + (j + 0.5) * step;
       const CameraRay ray = camera.ray(x, y);
       const std::optional<Hit> hit = shared->geometry.intersect({ray.origin, ray.direction});
-      const Subpixel here{static_cast<std::uint32_t>(pixel),
+      const Subpixel here{static_cast<std::uint32_t>(pixel), static_cast<std::uint32_t>(subpixel),
                           shadow_sample(first_pixel + pixel, subpixel, subpixels)};
-      radiance += hit ? shade(ray, *hit, here, &means, queries) : shared->background.radiance(ray.direction);
+      radiance += hit ? shade(ray, *hit, here, &means, queries) : shared->far_radiance(ray.direction);
     }
     rows->radiance[pixel] = (radiance * step * step).cast<float>();
     rows->query_count[pixel] =
@@ -299,18 +377,13 @@ TracedRows Scene::trace(int first_row, int row_count) const {
     throw UsageError(
         fmt::format("rows {} to {} of an image of {} rows", first_row, first_row + row_count, self.height));
   TracedRows rows = empty_rows(first_row, row_count, self.width);
-  std::vector<std::vector<GlintQuery>> row_queries(static_cast<std::size_t>(row_count));
+  std::vector<RowQueries> row_queries(static_cast<std::size_t>(row_count));
   tbb::parallel_for(0, row_count, [&](int row) {
     self.trace_row(row, &rows, &row_queries[static_cast<std::size_t>(row)]);
   });
-
-  std::size_t total = 0;
-  for (const auto& queries : row_queries) total += queries.size();
-  rows.queries.reserve(total);
-  for (auto& queries : row_queries) {
-    rows.queries.insert(rows.queries.end(), queries.begin(), queries.end());
-    std::vector<GlintQuery>().swap(queries);
-  }
+  join(&row_queries, &RowQueries::glints, &rows.queries);
+  join(&row_queries, &RowQueries::points, &rows.points);
+  join(&row_queries, &RowQueries::lit, &rows.lit);
   return rows;
 }
 

@@ -7,6 +7,9 @@
 #include "host/base/glints.h"
 #include "host/base/query.h"
 #include "host/scene/description.h"
+#include "host/scene/environment.h"
+#include "host/scene/geometry.h"
+#include "host/scene/lit_point.h"
 
 namespace mica {
 
@@ -23,12 +26,20 @@ struct GlintQuery {
 struct TracedRows {
   int first_row = 0, row_count = 0;
   std::vector<GlintQuery> queries;  ///< ordered by pixel, subpixel, light: the order in which they are summed
+  std::vector<LitPoint> points;     ///< that gather light, ordered by pixel and subpixel; see LightGathering
+  std::vector<LitBrdf> lit;         ///< lights on materials that are patch BRDFs, ordered as `queries`
   std::vector<Eigen::Vector3f> radiance;  ///< a pixel: diffuse lobes and background, without glints
   /// AOVs, a pixel: means over its subpixels that hit a shape; zero where none did.
   std::vector<Eigen::Vector2f> uv;  ///< of the map, wrapped to [0, 1); a mean across the wrap stays there
   std::vector<Eigen::Vector3f> footprint;  ///< cuu, cuv, cvv in uv^2
   std::vector<Eigen::Vector3f> normal;     ///< geometric normal towards the camera, world space
   std::vector<std::uint16_t> query_count;
+};
+
+/// What a scene hands out for the lights that are gathered by sampling directions.
+struct LightGathering {
+  bool points = false;                ///< trace fills TracedRows::points
+  std::vector<bool> patch_materials;  ///< those whose lights go to TracedRows::lit instead of `queries`
 };
 
 /// Shapes, lights and camera, ready to be traced. Immutable after construction; traced from any number of
@@ -46,7 +57,7 @@ class Scene {
   /// variance of its map and its own roughness; 0.1 for materials that it leaves out. Throws UsageError for
   /// settings that make no sense, FileError for meshes and backgrounds that cannot be used.
   Scene(const SceneDescription& description, int width, int height, int subpixels,
-        std::vector<double> masking_alpha = {});
+        std::vector<double> masking_alpha = {}, LightGathering gathering = {});
   ~Scene();
   Scene(Scene&&) noexcept;
 
@@ -57,6 +68,13 @@ class Scene {
   /// Traces rows [first_row, first_row + row_count). The result depends on nothing but the scene and the
   /// rows. Throws UsageError for rows outside the image.
   TracedRows trace(int first_row, int row_count) const;
+
+  const Geometry& geometry() const;
+  const Environment& environment() const;
+  const std::vector<LightDescription>& lights() const;
+  const std::vector<MaterialDescription>& materials() const;
+  std::uint32_t material_of(const Hit& hit) const;     ///< index into materials()
+  double masking_alpha(std::uint32_t material) const;  ///< as it was given
 
  private:
   struct Implementation;

@@ -104,6 +104,11 @@ Illumination illuminate(const LightDescription& light, const Eigen::Vector3d& po
   return std::visit(Illuminate{position}, light);
 }
 
+BounceFresnel::BounceFresnel(const Fresnel& fresnel, const Eigen::Vector3d& view,
+                             const Eigen::Vector3d& light)
+    : single(reflectance(fresnel, light.dot((view + light).normalized()))),
+      multiple(reflectance(fresnel, view.z())) {}
+
 LightRay light_ray(const LightDescription& light, const Eigen::Vector3d& position,
                    const Eigen::Vector2d& sample) {
   return std::visit(MakeLightRay{position, sample}, light);

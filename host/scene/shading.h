@@ -18,6 +18,12 @@ struct TangentFrame {
   Eigen::Vector2d on_disk(const Eigen::Vector3d& direction) const {
     return {direction.dot(x), direction.dot(y)};
   }
+  Eigen::Vector3d to_local(const Eigen::Vector3d& direction) const {
+    return {direction.dot(x), direction.dot(y), direction.dot(z)};
+  }
+  Eigen::Vector3d to_world(const Eigen::Vector3d& local) const {
+    return local.x() * x + local.y() * y + local.z() * z;
+  }
 };
 /// @param to_eye unit.
 TangentFrame tangent_frame(const Hit& hit, const Eigen::Vector3d& to_eye);
@@ -30,6 +36,14 @@ struct Illumination {
   double variance = 0;        ///< of the directions in which the light is seen, an axis, radians^2
 };
 Illumination illuminate(const LightDescription& light, const Eigen::Vector3d& position);
+
+/// What the two parts of a patch BRDF are multiplied with: light that bounced once takes Fresnel's factor at
+/// the half vector, light that bounced more often that of the view on the geometric normal, [Che19] Eq. 11.
+struct BounceFresnel {
+  /// @param view, light unit, in the tangent frame.
+  BounceFresnel(const Fresnel& fresnel, const Eigen::Vector3d& view, const Eigen::Vector3d& light);
+  Color single, multiple;
+};
 
 /// Where a shadow ray goes: to a point of the light that `sample`, uniform on the unit square, chooses. For
 /// lights without extent, to their middle.

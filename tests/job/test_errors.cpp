@@ -32,7 +32,8 @@ const char* const surface_keys = "resolution, rms_slope, correlation, seed";
 
 const std::vector<Mistake> unknown_keys = {
     {"", "[image]\n  @widht = 3",
-     "image.widht: found an unknown key; expected one of: width, height, subpixels, aovs, exposure "
+     "image.widht: found an unknown key; expected one of: width, height, subpixels, samples, max_bounces, "
+     "aovs, exposure "
      "(did you mean \"width\"?)"},
     {"", "[audit]\n@turbo = 1", "audit.turbo: found an unknown key; expected \"samples\""},
     {"", "[@lights]",
@@ -91,11 +92,13 @@ const std::vector<Mistake> missing_keys = {
     {"[[shape]]\ntype = \"sphere\"", "@[[shape]]\ntype = \"mesh\"",
      "shape.0: found no key \"file\"; expected a Wavefront OBJ file"},
     {"[[light]]\ntype = \"point\"", "@[[light]]",
-     "light.0: found no key \"type\"; expected one of: point, directional, sphere, disk"},
+     "light.0: found no key \"type\"; expected one of: point, directional, sphere, disk, environment, furnace"},
     {"[[light]]\ntype = \"point\"\nposition = [0, 0, 4]", "@[[light]]\ntype = \"point\"",
      "light.0: found no key \"position\"; expected an array of 3 numbers"},
     {"[[light]]\ntype = \"point\"\nposition = [0, 0, 4]", "@[[light]]\ntype = \"directional\"",
      "light.0: found no key \"direction\"; expected an array of 3 numbers"},
+    {"[[light]]\ntype = \"point\"\nposition = [0, 0, 4]", "@[[light]]\ntype = \"environment\"",
+     "light.0: found no key \"image\"; expected a lat-long EXR or HDR image"},
     {"\"bumps\"", "\"bumps\"\nspecular = @{ eta = [1, 1, 1] }",
      "material.gold.specular: found no key \"k\"; expected it beside \"eta\""},
 };
@@ -107,6 +110,11 @@ const std::vector<Mistake> out_of_range = {
     {"", "[image]\nwidth = @99999999999",
      "image.width: found 99999999999; expected an integer in [1, 16384]"},
     {"", "[image]\nsubpixels = @17", "image.subpixels: found 17; expected an integer in [1, 16]"},
+    {"", "[image]\nsamples = @0", "image.samples: found 0; expected an integer in [1, 65536]"},
+    {"", "[image]\nmax_bounces = @65", "image.max_bounces: found 65; expected an integer in [1, 64]"},
+    {"[[light]]\ntype = \"point\"\nposition = [0, 0, 4]",
+     "[[light]]\ntype = \"furnace\"\nradiance = [0, @-1, 0]",
+     "light.0.radiance.1: found -1; expected a number in [0, 1000000000]"},
     {"", "[image]\nexposure = @99", "image.exposure: found 99; expected a number in [-32, 32]"},
     {"", "[camera]\nfov = @0", "camera.fov: found 0; expected a number in (0, 180)"},
     {"", "[camera]\nfov = @180.0", "camera.fov: found 180 (a float); expected a number in (0, 180)"},

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+#include "host/base/query.h"
+#include "host/scene/hit.h"
+#include "host/scene/shading.h"
+
+namespace mica {
+
+/// A footprint that gathers light from all around, in a traced subpixel.
+struct LitPoint {
+  Hit hit;
+  TangentFrame frame;
+  Eigen::Vector3d to_eye;      ///< unit
+  Footprint footprint;         ///< in the map's uv
+  std::uint32_t pixel = 0;     ///< row * width + column, from the first traced row
+  std::uint32_t subpixel = 0;  ///< in its pixel
+  std::uint32_t material = 0;  ///< index into SceneDescription::materials
+};
+
+/// A light seen in a footprint whose material is a patch BRDF, with what its two parts are multiplied with.
+struct LitBrdf {
+  BrdfQuery query;
+  std::uint32_t pixel = 0;
+  std::uint32_t material = 0;
+  Eigen::Vector3f weight_single = Eigen::Vector3f::Zero();    ///< radiance into the pixel per unit of it
+  Eigen::Vector3f weight_multiple = Eigen::Vector3f::Zero();  ///< the same of light that bounced more often
+};
+
+}  // namespace mica
