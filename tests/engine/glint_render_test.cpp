@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "host/base/error.h"
 #include "host/engine/render.h"
 #include "host/image/image.h"
 #include "host/job/job.h"
@@ -12,8 +13,11 @@
 namespace mica {
 namespace {
 
+const char* const kSun = "type = \"directional\"\ndirection = [0.3, 1.0, -0.8]";
+const char* const kFurnace = "type = \"furnace\"";
+
 /// A small picture of a sphere; `keys` go into its material.
-std::string sphere_job(const std::string& keys) {
+std::string sphere_job(const std::string& keys, const std::string& light = kSun) {
   const std::string path = testing::TempDir() + "mica_glint_render_test.toml";
   std::ofstream(path) << R"(
 [image]
@@ -28,20 +32,18 @@ fov = 32
 [[shape]]
 type = "sphere"
 material = "glitter"
-[[light]]
-type = "directional"
-direction = [0.3, 1.0, -0.8]
 [audit]
 samples = 200
 [material.glitter]
 ndf = "grid"
 alpha = 0.5
-)" << keys << '\n';
+)" << keys << "\n[[light]]\n"
+                      << light << '\n';
   return path;
 }
 
-RenderResult render_sphere(const std::string& keys, int rows_a_block = 0) {
-  const Job job = load_job(sphere_job("microroughness = 0.05\n" + keys), {});
+RenderResult render_sphere(const std::string& keys, int rows_a_block = 0, const std::string& light = kSun) {
+  const Job job = load_job(sphere_job("microroughness = 0.05\n" + keys, light), {});
   Plan plan = make_plan(job);
   if (rows_a_block) plan.rows_a_block = rows_a_block;
   Device device(0);
@@ -117,6 +119,13 @@ TEST(GlintRender, ColorsAverageToTheirMean) {
 TEST(GlintRender, IsTheSameForAnyBlockSize) {
   const std::string keys = "mapping = \"triplanar\"\ncolors = [[1, 0, 0], [0, 1, 1]]";
   EXPECT_EQ(render_sphere(keys, 72).image.pixels, render_sphere(keys, 5).image.pixels);
+}
+
+TEST(GlintRender, ShinesInLightFromAllAround) {
+  const double smooth = total(render_sphere("density = 1e12", 0, kFurnace), 0),
+               glints = total(render_sphere("density = 1e5", 0, kFurnace), 0);
+  EXPECT_NEAR(glints, smooth, 0.04 * smooth);
+  EXPECT_THROW(render_sphere("mapping = \"triplanar\"", 0, kFurnace), UsageError);
 }
 
 TEST(GlintRender, PlansNothingButAKernel) {
