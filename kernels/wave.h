@@ -64,6 +64,7 @@ static inline float wave_sum(wave_float x, local int* scratch) {
 }
 
 #define wave_rsqrt(x) rsqrt(x)
+#define wave_rough_rsqrt(x) rsqrt(x)
 #define wave_reciprocal(x) (1.0f / (x))
 
 static inline float wave_max(wave_float x, local int* scratch) {
@@ -158,6 +159,15 @@ static inline wave_float wave_rsqrt(wave_float x) {
 #if MICA_AVX512
   const wave_float y = __builtin_ia32_rsqrt14ps512_mask(x, x, (ushort)0xffff);
   return y * fma(-0.5f * x * y, y, 1.5f);  // one step of Newton's
+#else
+  return rsqrt(x);
+#endif
+}
+
+// The same with a relative error of 6e-5.
+static inline wave_float wave_rough_rsqrt(wave_float x) {
+#if MICA_AVX512
+  return __builtin_ia32_rsqrt14ps512_mask(x, x, (ushort)0xffff);
 #else
   return rsqrt(x);
 #endif

@@ -6,18 +6,20 @@
 #include "host/base/error.h"
 #include "host/engine/beckmann_evaluator.h"
 #include "host/engine/mixture_evaluator.h"
+#include "host/engine/pyramid_evaluator.h"
 #include "host/engine/triangle_evaluator.h"
 
 namespace mica {
 
 const std::vector<std::string>& evaluator_names() {
-  static const std::vector<std::string> names = {"triangles", "gaussians", "beckmanns"};
+  static const std::vector<std::string> names = {"triangles", "gaussians", "beckmanns", "pyramid"};
   return names;
 }
 
 std::unique_ptr<Evaluator> make_evaluator(const std::string& name, Device& device, const Surface& surface,
                                           int elements) {
   if (name == "triangles") return std::make_unique<TriangleEvaluator>(device, surface);
+  if (name == "pyramid") return std::make_unique<PyramidEvaluator>(device, surface);
   MixtureSettings mixture;
   mixture.elements = elements;
   if (name == "gaussians") return std::make_unique<GaussianEvaluator>(device, surface, mixture);

@@ -13,7 +13,7 @@ namespace mica {
 /// Names that `make_evaluator` takes.
 const std::vector<std::string>& evaluator_names();
 
-/// The evaluator of that name on `surface`. `device` must outlive it; the surface need not.
+/// The evaluator of that name on `surface`. `device` and `surface` must outlive it.
 /// @param elements of a mixture, a texel and axis; other evaluators do not mind it.
 /// Throws UsageError for a name that does not exist, and for a surface or number of elements that it does not
 /// take.

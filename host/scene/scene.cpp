@@ -189,6 +189,7 @@ StaticScene make_static_scene(const SceneDescription& description) {
                    description.background.is_environment,
                    description.materials,
                    {},
+                   {},
                    {}};
   for (const MaterialDescription& material : description.materials)
     made.coats.push_back(material.coat ? std::optional<CoatInterface>(*material.coat) : std::nullopt);

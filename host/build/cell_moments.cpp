@@ -1,0 +1,134 @@
+#include "host/build/cell_moments.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "host/surface/interpolate.h"
+
+namespace mica {
+namespace {
+
+/// Normals may change by this much, in cells, over a piece of a triangle.
+constexpr double kPieceCells = 1.0;
+/// A triangle is cut into at most the square of this. Where normals change faster they are spread so thin
+/// that their peaks' shape does not matter.
+constexpr int kMostCuts = 8;
+
+constexpr int kBicubicParts = 4;  // a texel and axis
+
+}  // namespace
+
+NormalCells::NormalCells(const Surface& surface, double width) : width_(width) {
+  Eigen::Vector2d low = surface.normals().front(), high = low;
+  for (const Eigen::Vector2d& normal : surface.normals()) {
+    low = low.cwiseMin(normal);
+    high = high.cwiseMax(normal);
+  }
+  // Bicubic values overshoot: what lies outside falls into the outermost cells.
+  low_s_ = low.x(), low_t_ = low.y();
+  columns_ = static_cast<int>((high.x() - low.x()) / width) + 1;
+  rows_ = static_cast<int>((high.y() - low.y()) / width) + 1;
+}
+
+int NormalCells::cell_of(double s, double t) const {
+  const int column = std::clamp(static_cast<int>((s - low_s_) / width_), 0, columns_ - 1);
+  const int row = std::clamp(static_cast<int>((t - low_t_) / width_), 0, rows_ - 1);
+  return row * columns_ + column;
+}
+
+BlockMoments::BlockMoments(const Surface& surface, const NormalCells& cells)
+    : surface_(surface), cells_(cells), place_of_cell_(cells.count(), -1) {}
+
+std::vector<CellMoments> BlockMoments::block(int first_i, int first_j, int size) {
+  if (first_i >= surface_.width() || first_j >= surface_.height()) return {};
+  if (size == kBaseBlock) return base_block(first_i, first_j);
+  const int half = size / 2;
+  const std::vector<CellMoments> quarters[] = {
+      block(first_i, first_j, half), block(first_i + half, first_j, half),
+      block(first_i, first_j + half, half), block(first_i + half, first_j + half, half)};
+  return merge({&quarters[0], &quarters[1], &quarters[2], &quarters[3]});
+}
+
+std::vector<CellMoments> BlockMoments::merge(const std::vector<const std::vector<CellMoments>*>& quarters) {
+  for (const std::vector<CellMoments>* quarter : quarters)
+    for (const CellMoments& part : *quarter) at(part.cell).add(part.moments);
+  return take();
+}
+
+std::vector<CellMoments> BlockMoments::base_block(int first_i, int first_j) {
+  for (int j = first_j; j < std::min(first_j + kBaseBlock, surface_.height()); ++j)
+    for (int i = first_i; i < std::min(first_i + kBaseBlock, surface_.width()); ++i) add_texel(i, j);
+  return take();
+}
+
+void BlockMoments::add_texel(long i, long j) {
+  const Eigen::Vector2d corner(static_cast<double>(i), static_cast<double>(j));
+  if (surface_.interpolation() == Interpolation::nearest) return add_square(corner, surface_.texel(i, j));
+  const bool bicubic = surface_.interpolation() == Interpolation::bicubic;
+  const int parts = bicubic ? kBicubicParts : 1;
+  const auto vertex = [&](int a, int b) -> Eigen::Vector4d {
+    const Eigen::Vector2d normal =
+        bicubic ? bicubic_vertex(surface_, kBicubicParts * i + a, kBicubicParts * j + b)
+                : surface_.texel(i + a, j + b);
+    return {corner.x() + static_cast<double>(a) / parts, corner.y() + static_cast<double>(b) / parts,
+            normal.x(), normal.y()};
+  };
+  for (int b = 0; b < parts; ++b) {
+    for (int a = 0; a < parts; ++a) {
+      const Eigen::Vector4d right = vertex(a + 1, b), top = vertex(a, b + 1);
+      add_triangle(vertex(a, b), right, top);
+      add_triangle(vertex(a + 1, b + 1), top, right);
+    }
+  }
+}
+
+void BlockMoments::add_square(const Eigen::Vector2d& corner, const Eigen::Vector2d& normal) {
+  const Eigen::Vector4d mean(corner.x() + 0.5, corner.y() + 0.5, normal.x(), normal.y());
+  const Eigen::Vector4d variances(1.0 / 12, 1.0 / 12, 0, 0);
+  at(cells_.cell_of(normal.x(), normal.y())).add(1, mean, variances.asDiagonal());
+}
+
+/// A uniform triangle's covariance is a twelfth of its corners' products about their mean; n^2 pieces alike
+/// have an n^2th of it each.
+void BlockMoments::add_triangle(const Eigen::Vector4d& a, const Eigen::Vector4d& b,
+                                const Eigen::Vector4d& c) {
+  const Eigen::Vector4d ab = b - a, ac = c - a;
+  const double change = std::max({ab.tail<2>().cwiseAbs().maxCoeff(), ac.tail<2>().cwiseAbs().maxCoeff(),
+                                  (ac - ab).tail<2>().cwiseAbs().maxCoeff()});
+  const int n = static_cast<int>(
+      std::clamp(std::ceil(change / (kPieceCells * cells_.width())), 1.0, static_cast<double>(kMostCuts)));
+  const double area = 0.5 * std::abs(ab.x() * ac.y() - ab.y() * ac.x());
+  const Eigen::Matrix4d products =
+      ab * ab.transpose() + ac * ac.transpose() - 0.5 * (ab * ac.transpose() + ac * ab.transpose());
+  const Eigen::Matrix4d covariance = products / (18.0 * n * n);
+  for (int row = 0; row < n; ++row) {
+    for (int column = 0; column + row < n; ++column) {
+      const auto add = [&](double third) {  // of a piece's edges from the corner to the piece's mean
+        const Eigen::Vector4d mean = a + (column + third) / n * ab + (row + third) / n * ac;
+        at(cells_.cell_of(mean[2], mean[3])).add(area / (n * n), mean, covariance);
+      };
+      add(1.0 / 3);
+      if (column + row + 1 < n) add(2.0 / 3);
+    }
+  }
+}
+
+Moments& BlockMoments::at(int cell) {
+  int& place = place_of_cell_[cell];
+  if (place < 0) {
+    place = static_cast<int>(sums_.size());
+    sums_.push_back({cell, {}});
+  }
+  return sums_[place].moments;
+}
+
+std::vector<CellMoments> BlockMoments::take() {
+  for (const CellMoments& sum : sums_) place_of_cell_[sum.cell] = -1;
+  std::sort(sums_.begin(), sums_.end(),
+            [](const CellMoments& a, const CellMoments& b) { return a.cell < b.cell; });
+  std::vector<CellMoments> taken(sums_);
+  sums_.clear();
+  return taken;
+}
+
+}  // namespace mica

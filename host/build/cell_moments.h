@@ -1,0 +1,55 @@
+#pragma once
+
+#include <vector>
+
+#include "host/build/moments.h"
+#include "host/surface/surface.h"
+
+namespace mica {
+
+/// Square cells over the normals of a map.
+class NormalCells {
+ public:
+  NormalCells(const Surface& surface, double width);
+
+  double width() const { return width_; }
+  int count() const { return columns_ * rows_; }
+  int cell_of(double s, double t) const;
+
+ private:
+  double width_, low_s_, low_t_;
+  int columns_, rows_;
+};
+
+/// Moments of square blocks of the map by cell of the normal. A block's are summed in a fixed order,
+/// whichever blocks are asked for: from its four quarters, down to squares of `kBaseBlock` texels, triangle
+/// by triangle.
+class BlockMoments {
+ public:
+  static constexpr int kBaseBlock = 16;  ///< texels a side
+
+  /// Both have to outlive this.
+  BlockMoments(const Surface& surface, const NormalCells& cells);
+
+  /// The block whose lower left texel is (first_i, first_j); cut at the map's edge. By cell, in their order.
+  /// @param size kBaseBlock times a power of two.
+  std::vector<CellMoments> block(int first_i, int first_j, int size);
+
+  /// The same of a block whose quarters are known.
+  std::vector<CellMoments> merge(const std::vector<const std::vector<CellMoments>*>& quarters);
+
+ private:
+  std::vector<CellMoments> base_block(int first_i, int first_j);
+  void add_texel(long i, long j);
+  void add_triangle(const Eigen::Vector4d& a, const Eigen::Vector4d& b, const Eigen::Vector4d& c);
+  void add_square(const Eigen::Vector2d& corner, const Eigen::Vector2d& normal);
+  Moments& at(int cell);
+  std::vector<CellMoments> take();
+
+  const Surface& surface_;
+  const NormalCells& cells_;
+  std::vector<int> place_of_cell_;  // in sums_, or -1
+  std::vector<CellMoments> sums_;   // in the order in which cells were first met
+};
+
+}  // namespace mica

@@ -1,0 +1,247 @@
+#include "host/build/element_tree.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "host/build/normal_box.h"
+
+namespace mica {
+namespace {
+
+using namespace device_types;
+
+constexpr std::size_t kChildren = 16;
+
+struct Element {
+  double weight;
+  Eigen::Vector4d mean;  ///< position from the group's corner
+  Eigen::Matrix4d covariance;
+};
+using Elements = std::vector<Element>;
+
+std::size_t round_up(std::size_t n, std::size_t multiple) {
+  return (n + multiple - 1) / multiple * multiple;
+}
+
+/// Sorts so that runs of 16, of 256 and of 4096 are compact: halves along the axis of the largest extent,
+/// measured in blocks and cells, until a run is left.
+class CompactOrder {
+ public:
+  CompactOrder(Elements* elements, const GroupShape& group)
+      : elements_(*elements),
+        unit_(group.block_texels, group.block_texels, group.cell_width, group.cell_width) {
+    sort(0, elements_.size());
+  }
+
+ private:
+  void sort(std::size_t first, std::size_t last) {
+    const std::size_t count = last - first;
+    if (count <= kChildren) return;
+    std::size_t run = kChildren;
+    while (run * kChildren < count) run *= kChildren;
+    split_at(first, first + round_up((count + 1) / 2, run), last);
+  }
+  void split_at(std::size_t first, std::size_t middle, std::size_t last) {
+    const int axis = longest_axis(first, last);
+    const auto begin = elements_.begin();
+    std::nth_element(begin + static_cast<long>(first), begin + static_cast<long>(middle),
+                     begin + static_cast<long>(last),
+                     [axis](const Element& a, const Element& b) { return a.mean[axis] < b.mean[axis]; });
+    sort(first, middle);
+    sort(middle, last);
+  }
+  int longest_axis(std::size_t first, std::size_t last) const {
+    Eigen::Vector4d low = elements_[first].mean, high = low;
+    for (std::size_t n = first; n < last; ++n) {
+      low = low.cwiseMin(elements_[n].mean);
+      high = high.cwiseMax(elements_[n].mean);
+    }
+    int axis = 0;
+    (high - low).cwiseQuotient(unit_).maxCoeff(&axis);
+    return axis;
+  }
+
+  Elements& elements_;
+  Eigen::Vector4d unit_;
+};
+
+std::int16_t to_short(double value) {
+  return static_cast<std::int16_t>(std::clamp<long>(std::lround(value), -MICA_BOUND_ONE, MICA_BOUND_ONE));
+}
+
+/// Larger eigenvalue of a symmetric 2x2 matrix.
+double largest_eigenvalue(const Eigen::Matrix2d& m) {
+  return 0.5 * (m(0, 0) + m(1, 1)) + std::hypot(0.5 * (m(0, 0) - m(1, 1)), m(0, 1));
+}
+
+template <typename Word>
+void put(Word word, int place, std::int16_t* record) {
+  static_assert(sizeof word == 2 * sizeof *record);
+  std::memcpy(record + 2 * place, &word, sizeof word);
+}
+
+/// Writes up to sixteen elements; missing ones get no weight.
+class RecordWriter {
+ public:
+  RecordWriter(const Element* first, std::size_t count, double group_size, std::int16_t* record)
+      : first_(first), count_(count), record_(record), group_size_(group_size) {}
+
+  void write() const {
+    const double position =
+        largest([](const Element& e) { return e.covariance.topLeftCorner<2, 2>().cwiseAbs().maxCoeff(); });
+    const double normal = largest(
+        [](const Element& e) { return e.covariance.bottomRightCorner<2, 2>().cwiseAbs().maxCoeff(); });
+    const double cross =
+        largest([](const Element& e) { return e.covariance.bottomLeftCorner<2, 2>().cwiseAbs().maxCoeff(); });
+    const double weight = largest([](const Element& e) { return e.weight; });
+    Eigen::Vector2d low = first_->mean.tail<2>(), high = low;
+    for (std::size_t n = 1; n < count_; ++n) {
+      low = low.cwiseMin(first_[n].mean.tail<2>());
+      high = high.cwiseMax(first_[n].mean.tail<2>());
+    }
+    // In fixed point, so that the difference from a half vector is exact.
+    const Eigen::Vector2d middle = 0.5 * (low + high);
+    const auto origin_s = static_cast<std::int32_t>(std::lround(middle.x() * MICA_NORMAL_ONE));
+    const auto origin_t = static_cast<std::int32_t>(std::lround(middle.y() * MICA_NORMAL_ONE));
+    const Eigen::Vector2d origin = Eigen::Vector2d(origin_s, origin_t) / MICA_NORMAL_ONE;
+    const double reach = std::max(0.5 * (high - low).maxCoeff() + 1.0 / MICA_NORMAL_ONE, 1e-12);
+    put(origin_s, MICA_RECORD_ORIGIN_S, record_);
+    put(origin_t, MICA_RECORD_ORIGIN_T, record_);
+    const double mean_unit = put_unit(reach, MICA_RECORD_MEAN_UNIT);
+    const double weight_unit = put_unit(weight, MICA_RECORD_WEIGHT_UNIT);
+    const double position_unit = put_unit(position, MICA_RECORD_POSITION_UNIT);
+    const double normal_unit = put_unit(normal, MICA_RECORD_NORMAL_UNIT);
+    const double cross_unit = put_unit(cross, MICA_RECORD_CROSS_UNIT);
+
+    for (std::size_t n = 0; n < count_; ++n) {
+      const Element& e = first_[n];
+      const auto field = [&](int index, double value) {
+        record_[MICA_RECORD_FIELDS + kChildren * index + n] = to_short(value);
+      };
+      field(MICA_ELEMENT_WEIGHT, e.weight / weight_unit);
+      field(MICA_ELEMENT_X, e.mean[0] / group_size_ * MICA_BOUND_ONE);
+      field(MICA_ELEMENT_Y, e.mean[1] / group_size_ * MICA_BOUND_ONE);
+      field(MICA_ELEMENT_S, (e.mean[2] - origin[0]) / mean_unit);
+      field(MICA_ELEMENT_T, (e.mean[3] - origin[1]) / mean_unit);
+      field(MICA_ELEMENT_XX, e.covariance(0, 0) / position_unit);
+      field(MICA_ELEMENT_XY, e.covariance(0, 1) / position_unit);
+      field(MICA_ELEMENT_YY, e.covariance(1, 1) / position_unit);
+      field(MICA_ELEMENT_SX, e.covariance(2, 0) / cross_unit);
+      field(MICA_ELEMENT_SY, e.covariance(2, 1) / cross_unit);
+      field(MICA_ELEMENT_TX, e.covariance(3, 0) / cross_unit);
+      field(MICA_ELEMENT_TY, e.covariance(3, 1) / cross_unit);
+      field(MICA_ELEMENT_SS, e.covariance(2, 2) / normal_unit);
+      field(MICA_ELEMENT_ST, e.covariance(2, 3) / normal_unit);
+      field(MICA_ELEMENT_TT, e.covariance(3, 3) / normal_unit);
+    }
+  }
+
+ private:
+  template <typename Value>
+  double largest(const Value& value) const {
+    double result = 0;
+    for (std::size_t n = 0; n < count_; ++n) result = std::max(result, value(first_[n]));
+    return result;
+  }
+  /// The unit as the kernel will read it.
+  double put_unit(double largest_value, int place) const {
+    const auto unit = static_cast<float>(std::max(largest_value, 1e-30) / MICA_BOUND_ONE);
+    put(unit, place, record_);
+    return unit;
+  }
+
+  const Element* first_;
+  std::size_t count_;
+  std::int16_t* record_;
+  double group_size_;
+};
+
+/// What a node says of one child.
+struct ElementBound {
+  Eigen::Vector2d low = Eigen::Vector2d::Constant(1e300), high = Eigen::Vector2d::Constant(-1e300);
+  NormalBox normals;
+  double variance_position = 0, variance_normal = 0;
+
+  void add(const Element& e) {
+    low = low.cwiseMin(e.mean.head<2>());
+    high = high.cwiseMax(e.mean.head<2>());
+    normals.add(std::lround(e.mean[2] * MICA_NORMAL_ONE), std::lround(e.mean[3] * MICA_NORMAL_ONE));
+    variance_position = std::max(variance_position, largest_eigenvalue(e.covariance.topLeftCorner<2, 2>()));
+    variance_normal = std::max(variance_normal, largest_eigenvalue(e.covariance.bottomRightCorner<2, 2>()));
+  }
+  void add(const ElementBound& other) {
+    low = low.cwiseMin(other.low);
+    high = high.cwiseMax(other.high);
+    normals.add(other.normals);
+    variance_position = std::max(variance_position, other.variance_position);
+    variance_normal = std::max(variance_normal, other.variance_normal);
+  }
+};
+
+/// Rounded outwards.
+void store(const ElementBound& bound, double group_size, std::size_t child, std::int16_t* node) {
+  const double to_unit = MICA_BOUND_ONE / group_size;
+  for (const int axis : {0, 1}) {
+    const double low = std::floor(bound.low[axis] * to_unit), high = std::ceil(bound.high[axis] * to_unit);
+    node[child + 32 * axis] = to_short(std::floor(0.5 * (low + high)));
+    node[child + 32 * axis + 16] = to_short(std::ceil(0.5 * (high - low)) + 1);
+  }
+  store(bound.normals, static_cast<int>(child), node + 64);
+}
+
+/// Nodes over `children`, sixteen each.
+std::vector<ElementBound> add_nodes(const std::vector<ElementBound>& children, double group_size,
+                                    std::vector<std::int16_t>* nodes) {
+  std::vector<ElementBound> bounds;
+  for (std::size_t first = 0; first < children.size(); first += kChildren) {
+    nodes->resize(nodes->size() + MICA_PYRAMID_NODE_STRIDE);
+    std::int16_t* node = nodes->data() + nodes->size() - MICA_PYRAMID_NODE_STRIDE;
+    ElementBound all;
+    for (std::size_t child = 0; child < kChildren; ++child) {
+      if (first + child < children.size()) {
+        store(children[first + child], group_size, child, node);
+        all.add(children[first + child]);
+      } else {
+        store(NormalBox{}, static_cast<int>(child), node + 64);
+      }
+    }
+    put(static_cast<std::int32_t>(first), MICA_PYRAMID_NODE_CHILD, node);
+    put(static_cast<float>(2 * all.variance_position), MICA_PYRAMID_NODE_SPREAD_P, node);
+    put(static_cast<float>(2 * all.variance_normal), MICA_PYRAMID_NODE_SPREAD_N, node);
+    bounds.push_back(all);
+  }
+  return bounds;
+}
+
+}  // namespace
+
+ElementTree build_element_tree(const GroupShape& group, const std::vector<CellMoments>& parts) {
+  Elements elements;
+  elements.reserve(parts.size());
+  for (const CellMoments& part : parts) {
+    if (!(part.moments.weight > 0)) continue;
+    Element element{part.moments.weight, part.moments.mean(), part.moments.covariance()};
+    element.mean.head<2>() -= group.corner_texels;
+    elements.push_back(element);
+  }
+  CompactOrder(&elements, group);
+  ElementTree tree;
+  std::vector<ElementBound> bounds;
+  for (std::size_t first = 0; first < elements.size(); first += kChildren) {
+    const std::size_t count = std::min(kChildren, elements.size() - first);
+    tree.records.resize(tree.records.size() + MICA_RECORD_STRIDE);
+    RecordWriter(&elements[first], count, group.size_texels,
+                 tree.records.data() + tree.records.size() - MICA_RECORD_STRIDE)
+        .write();
+    ElementBound bound;
+    for (std::size_t n = first; n < first + count; ++n) bound.add(elements[n]);
+    tree.largest_variance = std::max(tree.largest_variance, bound.variance_position);
+    bounds.push_back(bound);
+  }
+  bounds = add_nodes(bounds, group.size_texels, &tree.nodes);
+  add_nodes(bounds, group.size_texels, &tree.top_nodes);
+  return tree;
+}
+
+}  // namespace mica

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "host/build/moments.h"
+#include "kernels/pyramid_types.h"
+
+namespace mica {
+
+/// The tree over one group's elements, in the kernel's form, with children counted from the group's own
+/// first.
+struct ElementTree {
+  std::vector<std::int16_t> top_nodes, nodes, records;
+  double largest_variance = 0;  ///< of an element's position along any axis, texels^2
+};
+
+/// What sorts elements into records that are compact in position and normal.
+struct GroupShape {
+  Eigen::Vector2d corner_texels;
+  double size_texels = 0, block_texels = 0, cell_width = 0;
+};
+
+/// @param parts of all the group's blocks.
+ElementTree build_element_tree(const GroupShape& group, const std::vector<CellMoments>& parts);
+
+}  // namespace mica

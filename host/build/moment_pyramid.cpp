@@ -1,0 +1,160 @@
+#include "host/build/moment_pyramid.h"
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "host/build/cell_moments.h"
+#include "host/build/element_tree.h"
+
+namespace mica {
+namespace {
+
+using namespace device_types;
+
+/// Blocks of one size, row by row.
+struct BlockGrid {
+  int block = 0, columns = 0, rows = 0;
+  std::vector<std::vector<CellMoments>> parts;
+
+  BlockGrid(const Surface& surface, int block_texels)
+      : block(block_texels),
+        columns((surface.width() + block_texels - 1) / block_texels),
+        rows((surface.height() + block_texels - 1) / block_texels),
+        parts(static_cast<std::size_t>(columns) * rows) {}
+
+  /// Null outside the map.
+  std::vector<CellMoments>* at(int column, int row) {
+    if (column >= columns || row >= rows) return nullptr;
+    return &parts[static_cast<std::size_t>(row) * columns + column];
+  }
+};
+
+using ThreadMoments = tbb::enumerable_thread_specific<BlockMoments>;
+
+/// The next coarser grid; takes the finer one's parts.
+BlockGrid merged(const Surface& surface, BlockGrid finer, ThreadMoments* moments) {
+  BlockGrid grid(surface, 2 * finer.block);
+  tbb::parallel_for(std::size_t{0}, grid.parts.size(), [&](std::size_t n) {
+    const int column = static_cast<int>(n % grid.columns), row = static_cast<int>(n / grid.columns);
+    std::vector<const std::vector<CellMoments>*> quarters;
+    for (const int quarter : {0, 1, 2, 3}) {
+      std::vector<CellMoments>* part = finer.at(2 * column + (quarter & 1), 2 * row + (quarter >> 1));
+      if (part != nullptr) quarters.push_back(part);
+    }
+    grid.parts[n] = moments->local().merge(quarters);
+    for (const int quarter : {0, 1, 2, 3}) {
+      std::vector<CellMoments>* part = finer.at(2 * column + (quarter & 1), 2 * row + (quarter >> 1));
+      if (part != nullptr) std::vector<CellMoments>().swap(*part);
+    }
+  });
+  return grid;
+}
+
+/// Appends a group's nodes, whose children then follow those that are there.
+void append_nodes(const std::vector<std::int16_t>& nodes, std::size_t children_before,
+                  std::vector<std::int16_t>* all) {
+  const std::size_t first = all->size();
+  all->insert(all->end(), nodes.begin(), nodes.end());
+  for (std::size_t at = first + 2 * MICA_PYRAMID_NODE_CHILD; at < all->size();
+       at += MICA_PYRAMID_NODE_STRIDE) {
+    std::int32_t child = 0;
+    std::memcpy(&child, all->data() + at, sizeof child);
+    child += static_cast<std::int32_t>(children_before);
+    std::memcpy(all->data() + at, &child, sizeof child);
+  }
+}
+
+PyramidLevel flatten(const Surface& surface, double cell_width, BlockGrid* grid) {
+  PyramidLevel level;
+  const auto groups = [](int blocks) { return (blocks + MICA_GROUP_BLOCKS - 1) / MICA_GROUP_BLOCKS; };
+  level.shape = {surface.width(),
+                 surface.height(),
+                 groups(grid->columns),
+                 groups(grid->rows),
+                 grid->block * MICA_GROUP_BLOCKS,
+                 0};
+  std::vector<ElementTree> trees(static_cast<std::size_t>(level.shape.groups_x) * level.shape.groups_y);
+  tbb::parallel_for(std::size_t{0}, trees.size(), [&](std::size_t n) {
+    const int column = static_cast<int>(n % level.shape.groups_x) * MICA_GROUP_BLOCKS;
+    const int row = static_cast<int>(n / level.shape.groups_x) * MICA_GROUP_BLOCKS;
+    std::vector<CellMoments> parts;
+    for (int block = 0; block < MICA_GROUP_BLOCKS * MICA_GROUP_BLOCKS; ++block) {
+      const std::vector<CellMoments>* part =
+          grid->at(column + block % MICA_GROUP_BLOCKS, row + block / MICA_GROUP_BLOCKS);
+      if (part != nullptr) parts.insert(parts.end(), part->begin(), part->end());
+    }
+    GroupShape shape;
+    shape.corner_texels = Eigen::Vector2d(column, row) * grid->block;
+    shape.size_texels = level.shape.group_size;
+    shape.block_texels = grid->block;
+    shape.cell_width = cell_width;
+    trees[n] = build_element_tree(shape, parts);
+  });
+  double variance = 0;
+  for (const ElementTree& tree : trees) {
+    level.groups.push_back(static_cast<std::int32_t>(level.top_nodes.size() / MICA_PYRAMID_NODE_STRIDE));
+    append_nodes(tree.top_nodes, level.nodes.size() / MICA_PYRAMID_NODE_STRIDE, &level.top_nodes);
+    append_nodes(tree.nodes, level.records.size() / MICA_RECORD_STRIDE, &level.nodes);
+    level.records.insert(level.records.end(), tree.records.begin(), tree.records.end());
+    variance = std::max(variance, tree.largest_variance);
+  }
+  level.groups.push_back(static_cast<std::int32_t>(level.top_nodes.size() / MICA_PYRAMID_NODE_STRIDE));
+  for (const std::vector<CellMoments>& part : grid->parts) level.elements += part.size();
+  level.shape.spread = static_cast<float>(std::sqrt(2 * variance));
+  return level;
+}
+
+}  // namespace
+
+std::size_t PyramidLevel::bytes() const {
+  return groups.size() * sizeof groups[0] +
+         (top_nodes.size() + nodes.size() + records.size()) * sizeof records[0];
+}
+
+int whole_map_block(int map_width, int map_height) {
+  int block = kFinestBlock;
+  while (block < std::max(map_width, map_height)) block *= 2;
+  return block;
+}
+
+void build_moment_pyramid(const Surface& surface, double cell_width, int finest_block,
+                          const std::function<void(int block, PyramidLevel level)>& take) {
+  const NormalCells cells(surface, cell_width);
+  ThreadMoments moments([&] { return BlockMoments(surface, cells); });
+  BlockGrid grid(surface, finest_block);
+  tbb::parallel_for(std::size_t{0}, grid.parts.size(), [&](std::size_t n) {
+    const int column = static_cast<int>(n % grid.columns), row = static_cast<int>(n / grid.columns);
+    grid.parts[n] = moments.local().block(column * finest_block, row * finest_block, finest_block);
+  });
+  const int coarsest = whole_map_block(surface.width(), surface.height());
+  for (;;) {
+    take(grid.block, flatten(surface, cell_width, &grid));
+    if (grid.block >= coarsest) return;
+    grid = merged(surface, std::move(grid), &moments);
+  }
+}
+
+std::size_t estimate_level_bytes(const Surface& surface, double cell_width, int block) {
+  constexpr int samples = 8;  // a side, at most: a sample of blocks spread over the map
+  const NormalCells cells(surface, cell_width);
+  const int columns = (surface.width() + block - 1) / block, rows = (surface.height() + block - 1) / block;
+  const int sampled_columns = std::min(columns, samples), sampled_rows = std::min(rows, samples);
+  std::vector<std::size_t> counts(static_cast<std::size_t>(sampled_columns) * sampled_rows);
+  ThreadMoments moments([&] { return BlockMoments(surface, cells); });
+  tbb::parallel_for(std::size_t{0}, counts.size(), [&](std::size_t n) {
+    const int column = static_cast<int>(n % sampled_columns) * columns / sampled_columns;
+    const int row = static_cast<int>(n / sampled_columns) * rows / sampled_rows;
+    counts[n] = moments.local().block(column * block, row * block, block).size();
+  });
+  double sum = 0;
+  for (const std::size_t count : counts) sum += static_cast<double>(count);
+  const double elements = sum / static_cast<double>(counts.size()) * columns * rows;
+  constexpr double bytes_an_element = (2.0 * MICA_RECORD_STRIDE + 2.0 * MICA_PYRAMID_NODE_STRIDE / 15) / 16;
+  return static_cast<std::size_t>(elements * bytes_an_element);
+}
+
+}  // namespace mica

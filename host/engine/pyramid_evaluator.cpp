@@ -1,0 +1,197 @@
+#include "host/engine/pyramid_evaluator.h"
+
+#include <tbb/parallel_for.h>
+
+#include <cmath>
+
+#include "host/base/stopwatch.h"
+#include "host/engine/accuracy.h"
+#include "host/engine/map_query.h"
+#include "host/engine/mixture_evaluator.h"
+#include "host/engine/triangle_evaluator.h"
+#include "host/surface/random.h"
+
+namespace mica {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+/// Cells narrower than this would be more than a map has texels; so small a roughness goes to the texels.
+constexpr double kNarrowestCell = 1.0 / 512;
+
+/// Answers of several evaluators, put together in the order of the queries.
+class CollectedDensities : public PendingDensities {
+ public:
+  explicit CollectedDensities(std::size_t count) : densities_(count) {}
+
+  void add(std::unique_ptr<PendingDensities> pending, std::vector<std::size_t> places) {
+    parts_.push_back({std::move(pending), std::move(places)});
+  }
+  std::vector<float> wait() override {
+    for (Part& part : parts_) {
+      const std::vector<float> answers = part.pending->wait();
+      for (std::size_t n = 0; n < answers.size(); ++n) densities_[part.places[n]] = answers[n];
+    }
+    return std::move(densities_);
+  }
+
+ private:
+  struct Part {
+    std::unique_ptr<PendingDensities> pending;
+    std::vector<std::size_t> places;
+  };
+  std::vector<Part> parts_;
+  std::vector<float> densities_;
+};
+
+}  // namespace
+
+PyramidEvaluator::PyramidEvaluator(Device& device, const Surface& surface, const PyramidSettings& settings)
+    : device_(device),
+      surface_(surface),
+      settings_(settings),
+      wave_form_(settings.wave_form.value_or(device.wave_form())),
+      cutoff_(cutoff_for(settings.precision.cutoff_error)) {}
+
+std::unique_ptr<PendingDensities> PyramidEvaluator::start(const std::vector<Query>& queries) {
+  std::map<PyramidChoice, std::vector<std::size_t>> by_level;
+  std::vector<std::size_t> small;
+  for (std::size_t n = 0; n < queries.size(); ++n) {
+    const std::optional<PyramidChoice> choice = choose(queries[n]);
+    (choice ? by_level[*choice] : small).push_back(n);
+  }
+  auto all = std::make_unique<CollectedDensities>(queries.size());
+  std::vector<Query> some;
+  const auto take = [&](const std::vector<std::size_t>& places) {
+    some.resize(places.size());
+    for (std::size_t n = 0; n < places.size(); ++n) some[n] = queries[places[n]];
+  };
+  for (auto& [choice, places] : by_level) {
+    take(places);
+    all->add(start_merged(some, choice, cutoff_, gain(choice)), std::move(places));
+  }
+  if (!small.empty()) {
+    take(small);
+    all->add(texels()->start(some), std::move(small));
+  }
+  return all;
+}
+
+std::unique_ptr<PendingDensities> PyramidEvaluator::start_merged(const std::vector<Query>& queries,
+                                                                 const PyramidChoice& choice, double cutoff,
+                                                                 double gain) {
+  PyramidLevelBatches& batches = level(choice);
+  std::vector<device_types::mica_pyramid_query> level_queries(queries.size());
+  tbb::parallel_for(std::size_t{0}, queries.size(), [&](std::size_t n) {
+    level_queries[n] =
+        to_pyramid_query(queries[n], batches.shape(), surface_.interpolation(), cutoff, choice.uniform);
+    level_queries[n].map.scale *= static_cast<float>(gain);
+  });
+  return batches.start(std::move(level_queries));
+}
+
+/// What culling drops has one sign. On average it is put back: the factor that brings queries all over the
+/// map closest to what they are with hardly any culling.
+double PyramidEvaluator::gain(const PyramidChoice& choice) {
+  const auto found = gains_.find(choice);
+  if (found != gains_.end()) return found->second;
+  if (settings_.count_elements) return 1;
+  constexpr int samples = 512;
+  constexpr double small_cutoff_error = 1e-6;
+  const Stopwatch watch;
+  // The middle of the footprints and roughnesses that read this level; wider footprints are uniform ones.
+  const double sigma = std::min(std::sqrt(2.0) * choice.block / settings_.precision.block_ratio,
+                                0.75 * std::max(surface_.width(), surface_.height()));
+  const double roughness =
+      std::exp2(0.25) * cell_width(choice.cell_class, settings_.precision) / settings_.precision.cell_ratio;
+  std::vector<Query> queries(samples);
+  for (int n = 0; n < samples; ++n) {
+    const auto random = [n](std::uint64_t stream) { return synthesis::random_unit(0, stream, n); };
+    Query& query = queries[n];
+    query.roughness = std::min(roughness, 1.0);
+    query.footprint = make_footprint(surface_, {random(0), random(1)}, sigma, sigma, 0);
+    const double distance = query.roughness * std::sqrt(-2 * std::log(1 - random(2))),
+                 angle = 2 * kPi * random(3);
+    const Eigen::Vector2d& normal =
+        surface_
+            .normals()[static_cast<std::size_t>(random(4) * static_cast<double>(surface_.normals().size()))];
+    query.half_vector =
+        (normal + distance * Eigen::Vector2d(std::cos(angle), std::sin(angle))).cwiseMax(-1).cwiseMin(1);
+  }
+  const std::vector<float> culled = start_merged(queries, choice, cutoff_, 1)->wait();
+  const std::vector<float> complete =
+      start_merged(queries, choice, cutoff_for(small_cutoff_error), 1)->wait();
+  double product = 0, square = 0;
+  for (int n = 0; n < samples; ++n) {
+    product += static_cast<double>(culled[n]) * complete[n];
+    square += static_cast<double>(culled[n]) * culled[n];
+  }
+  build_seconds_ += watch.seconds();
+  return gains_[choice] = square > 0 ? product / square : 1;
+}
+
+std::optional<PyramidChoice> PyramidEvaluator::choose(const Query& query) {
+  const std::optional<PyramidChoice> choice =
+      choose_level(query, surface_.width(), surface_.height(), settings_.precision);
+  if (!choice || cell_width(choice->cell_class, settings_.precision) < kNarrowestCell ||
+      choice->block < finest_block(choice->cell_class))
+    return std::nullopt;
+  return choice;
+}
+
+int PyramidEvaluator::finest_block(int cell_class) {
+  const auto found = finest_block_.find(cell_class);
+  if (found != finest_block_.end()) return found->second;
+  const Stopwatch watch;
+  const double width = cell_width(cell_class, settings_.precision);
+  const int whole_map = whole_map_block(surface_.width(), surface_.height());
+  int block = kFinestBlock;
+  while (block < whole_map && estimate_level_bytes(surface_, width, block) > settings_.level_bytes)
+    block *= 2;
+  finest_block_[cell_class] = block;
+  build_seconds_ += watch.seconds();
+  return block;
+}
+
+/// Coarser levels come with the one that is needed: together they take a third of it.
+PyramidLevelBatches& PyramidEvaluator::level(const PyramidChoice& choice) {
+  const PyramidChoice key{choice.cell_class, choice.block, false};
+  const auto found = levels_.find(key);
+  if (found != levels_.end()) return found->second;
+  const Stopwatch watch;
+  build_moment_pyramid(surface_, cell_width(choice.cell_class, settings_.precision), choice.block,
+                       [&](int block, const PyramidLevel& built) {
+                         levels_.try_emplace(PyramidChoice{choice.cell_class, block, false}, device_, built,
+                                             wave_form_, settings_.count_elements, settings_.batch_queries);
+                       });
+  build_seconds_ += watch.seconds();
+  return levels_.at(key);
+}
+
+Evaluator* PyramidEvaluator::texels() {
+  if (texels_) return texels_.get();
+  TriangleSettings settings;
+  settings.batch_queries = settings_.batch_queries;
+  settings.wave_form = wave_form_;
+  settings.count_flops = settings_.count_elements;
+  texels_ = std::make_unique<TriangleEvaluator>(device_, surface_, settings);
+  return texels_.get();
+}
+
+std::size_t PyramidEvaluator::device_bytes() const {
+  std::size_t bytes = texels_ ? texels_->device_bytes() : 0;
+  for (const auto& [choice, level] : levels_) bytes += level.device_bytes();
+  return bytes;
+}
+
+double PyramidEvaluator::build_seconds() const {
+  return build_seconds_ + (texels_ ? texels_->build_seconds() : 0);
+}
+
+double PyramidEvaluator::device_seconds() const {
+  double seconds = texels_ ? texels_->device_seconds() : 0;
+  for (const auto& [choice, level] : levels_) seconds += level.device_seconds();
+  return seconds;
+}
+
+}  // namespace mica

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+
+#include "host/device/device.h"
+#include "host/engine/evaluator.h"
+#include "host/engine/pyramid_level_batches.h"
+#include "host/engine/pyramid_query.h"
+#include "host/surface/surface.h"
+
+namespace mica {
+
+struct PyramidSettings {
+  PyramidPrecision precision;
+  std::size_t level_bytes = std::size_t{48} << 20;  ///< of a level, at most; finer ones are not built
+  std::size_t batch_queries = 1 << 17;              ///< queries a launch, at most
+  bool count_elements = false;        ///< densities become the numbers of elements summed, for benchmarks
+  std::optional<WaveForm> wave_form;  ///< default: what suits the device
+};
+
+/// `pyramid`: merged elements, whose number does not grow with the footprint; kernels/pyramid.cl. Levels are
+/// built when the first query needs them. Footprints that are too small for the finest level go to the texels
+/// themselves.
+class PyramidEvaluator : public Evaluator {
+ public:
+  /// Builds nothing yet. `device` and `surface` must outlive the evaluator.
+  PyramidEvaluator(Device& device, const Surface& surface, const PyramidSettings& settings = {});
+
+  std::unique_ptr<PendingDensities> start(const std::vector<Query>& queries) override;
+  std::string name() const override { return "pyramid"; }
+  std::size_t device_bytes() const override;
+  double build_seconds() const override;
+  double device_seconds() const override;
+
+  /// The level that a query reads, none: the texels.
+  std::optional<PyramidChoice> choose(const Query& query);
+
+ private:
+  int finest_block(int cell_class);
+  PyramidLevelBatches& level(const PyramidChoice& choice);
+  std::unique_ptr<PendingDensities> start_merged(const std::vector<Query>& queries,
+                                                 const PyramidChoice& choice, double cutoff, double gain);
+  double gain(const PyramidChoice& choice);
+  Evaluator* texels();
+
+  Device& device_;
+  const Surface& surface_;
+  PyramidSettings settings_;
+  WaveForm wave_form_;
+  double cutoff_, build_seconds_ = 0;
+  std::map<int, int> finest_block_;  // by cell class
+  std::map<PyramidChoice, PyramidLevelBatches> levels_;
+  std::map<PyramidChoice, double> gains_;
+  std::unique_ptr<Evaluator> texels_;
+};
+
+}  // namespace mica

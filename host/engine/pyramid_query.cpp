@@ -1,0 +1,79 @@
+#include "host/engine/pyramid_query.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "host/build/moment_pyramid.h"
+#include "host/engine/map_query.h"
+
+namespace mica {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kFirstRoughness = 0.02;  // whose cells are not narrower than asked for
+constexpr double kLargestAspect = 128;    // single precision keeps 0.1% of such a footprint's determinant
+constexpr double kSlack = 1e-9;           // of ratios that are meant to be equal
+constexpr double kUniformVariance = 0.8 * 0.8;  // see without_needless_periods
+
+}  // namespace
+
+double cell_width(int cell_class, const PyramidPrecision& precision) {
+  return precision.cell_ratio * kFirstRoughness * std::exp2(0.5 * cell_class);
+}
+
+std::optional<PyramidChoice> choose_level(const Query& query, int map_width, int map_height,
+                                          const PyramidPrecision& precision) {
+  PyramidChoice choice;
+  choice.cell_class = static_cast<int>(std::floor(2 * std::log2(query.roughness / kFirstRoughness) + kSlack));
+  const int whole_map = whole_map_block(map_width, map_height);
+  const Footprint footprint = without_needless_periods(query.footprint);
+  const FootprintAxes axes = footprint_axes(footprint, map_width, map_height);
+  choice.uniform = footprint.cov_uv == Eigen::Matrix2d::Identity() * kUniformVariance;
+  if (choice.uniform) {
+    choice.block = whole_map;
+    return choice;
+  }
+  if (axes.sigma_major_texels > kLargestAspect * axes.sigma_minor_texels) return std::nullopt;
+  const double largest = precision.block_ratio * axes.sigma_minor_texels * (1 + kSlack);
+  if (largest < kFinestBlock) return std::nullopt;
+  choice.block = whole_map;
+  while (choice.block > largest) choice.block /= 2;
+  return choice;
+}
+
+device_types::mica_pyramid_query to_pyramid_query(const Query& query,
+                                                  const device_types::mica_pyramid_level& level,
+                                                  Interpolation interpolation, double cutoff, bool uniform) {
+  device_types::mica_pyramid_query result{};
+  const device_types::mica_map_grid grid = {level.width, level.height, 0, 0};
+  result.map = to_map_query(query, grid, interpolation, cutoff);
+  if (uniform) {
+    // All of the map at once, with the same weight: a footprint so wide that every position counts alike.
+    const double sigma = 1e4 * std::max(level.width, level.height);
+    const auto variance = static_cast<float>(sigma * sigma);
+    result.cov_xx = result.cov_yy = variance;
+    result.map.whiten_1x = result.map.whiten_2y = static_cast<float>(1 / sigma);
+    result.map.whiten_1y = result.map.whiten_2x = 0;
+    result.map.extent_x = result.map.extent_y = 0;
+    result.map.scale = static_cast<float>(sigma * sigma / (2 * kPi * query.roughness * query.roughness) /
+                                          (static_cast<double>(level.width) * level.height));
+    return result;
+  }
+  const FootprintAxes axes =
+      footprint_axes(without_needless_periods(query.footprint), level.width, level.height);
+  const double variance_1 = axes.sigma_major_texels * axes.sigma_major_texels,
+               variance_2 = axes.sigma_minor_texels * axes.sigma_minor_texels;
+  const Eigen::Matrix2d cov =
+      variance_1 * axes.major * axes.major.transpose() + variance_2 * axes.minor * axes.minor.transpose();
+  result.cov_xx = static_cast<float>(cov(0, 0));
+  result.cov_xy = static_cast<float>(cov(0, 1));
+  result.cov_yy = static_cast<float>(cov(1, 1));
+  result.inverse_minor_variance = static_cast<float>(1 / variance_2);
+  const double spread = level.spread * level.spread;
+  result.map.extent_x = static_cast<float>(std::sqrt(cutoff * (cov(0, 0) + spread)));
+  result.map.extent_y = static_cast<float>(std::sqrt(cutoff * (cov(1, 1) + spread)));
+  result.map.scale = static_cast<float>(1 / (4 * kPi * kPi * query.roughness * query.roughness));
+  return result;
+}
+
+}  // namespace mica

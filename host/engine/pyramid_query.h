@@ -1,0 +1,43 @@
+#pragma once
+
+#include <optional>
+#include <tuple>
+
+#include "host/base/query.h"
+#include "host/surface/description.h"
+#include "kernels/pyramid_types.h"
+
+namespace mica {
+
+/// How closely `pyramid` merges. The defaults keep 1% relative L2.
+struct PyramidPrecision {
+  double block_ratio =
+      1.4142135623730951;      ///< largest block side in the footprint's smaller standard deviations
+  double cell_ratio = 1.5;     ///< largest cell width in roughnesses
+  double cutoff_error = 3e-2;  ///< weight, of the largest, at which culling may drop an element
+};
+
+/// The level that a query reads. A function of the query and the map's size alone.
+struct PyramidChoice {
+  int cell_class = 0;  ///< cells have a width of cell_width(cell_class, precision)
+  int block = 0;       ///< texels; the whole map's for a footprint that wraps to a uniform one
+  bool uniform = false;
+
+  friend bool operator<(const PyramidChoice& a, const PyramidChoice& b) {
+    return std::tie(a.cell_class, a.block, a.uniform) < std::tie(b.cell_class, b.block, b.uniform);
+  }
+};
+
+/// Cells come in widths half an octave apart: those of roughness 0.02 and sqrt(2)^n times as much.
+double cell_width(int cell_class, const PyramidPrecision& precision);
+
+/// None when the footprint is too small, or so thin that single precision cannot tell its determinant.
+std::optional<PyramidChoice> choose_level(const Query& query, int map_width, int map_height,
+                                          const PyramidPrecision& precision);
+
+/// The query in the kernel's form. @param uniform of the choice.
+device_types::mica_pyramid_query to_pyramid_query(const Query& query,
+                                                  const device_types::mica_pyramid_level& level,
+                                                  Interpolation interpolation, double cutoff, bool uniform);
+
+}  // namespace mica

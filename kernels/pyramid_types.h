@@ -1,0 +1,72 @@
+// What `pyramid` adds to types.h: the storage of its levels and its queries, the same bytes on host and device.
+#ifndef MICA_PYRAMID_TYPES_H
+#define MICA_PYRAMID_TYPES_H
+
+#include "types.h"
+
+#ifndef __cplusplus
+#define MICA_INT int
+#define MICA_FLOAT float
+#else
+#define MICA_INT std::int32_t
+#define MICA_FLOAT float
+namespace mica::device_types {
+#endif
+
+// Storage of a level. Sixteen elements are a record, sixteen records hang from a node, sixteen nodes from a top node; the
+// top nodes of a group, a square of MICA_GROUP_BLOCKS blocks a side, follow each other.
+enum {
+  MICA_GROUP_BLOCKS = 4,
+
+  // A record: its header, then sixteen shorts a field.
+  MICA_RECORD_STRIDE = 256,    // shorts
+  MICA_RECORD_FIELDS = 16,     // shorts before the first field: a header of eight words
+  MICA_RECORD_ORIGIN_S = 0,    // int: what mean_s and mean_t count from, fixed point like normals
+  MICA_RECORD_ORIGIN_T,        // int
+  MICA_RECORD_MEAN_UNIT,       // float: what one of mean_s and mean_t counts
+  MICA_RECORD_WEIGHT_UNIT,     // float: texels^2
+  MICA_RECORD_POSITION_UNIT,   // float: of covariances of position, texels^2
+  MICA_RECORD_NORMAL_UNIT,     // float: of covariances of normals
+  MICA_RECORD_CROSS_UNIT,      // float: of covariances of position with normal, texels
+
+  // A node: sixteen shorts a bound, x, half width, y, half height (like positions), s_min, s_max, t_min, t_max; then words.
+  MICA_PYRAMID_NODE_STRIDE = 136,  // shorts
+  MICA_PYRAMID_NODE_CHILD = 64,    // words before it; int: index of the first child
+  MICA_PYRAMID_NODE_SPREAD_P,      // float: twice the largest variance of an element's position, texels^2
+  MICA_PYRAMID_NODE_SPREAD_N       // float: twice the largest variance of an element's normal
+};
+
+// Fields of a record, after its header.
+enum {
+  MICA_ELEMENT_WEIGHT,
+  MICA_ELEMENT_X, MICA_ELEMENT_Y,  // mean position: of MICA_BOUND_ONE groups from the group's corner
+  MICA_ELEMENT_S, MICA_ELEMENT_T,  // mean normal
+  MICA_ELEMENT_XX, MICA_ELEMENT_XY, MICA_ELEMENT_YY,                   // covariances
+  MICA_ELEMENT_SX, MICA_ELEMENT_SY, MICA_ELEMENT_TX, MICA_ELEMENT_TY,
+  MICA_ELEMENT_SS, MICA_ELEMENT_ST, MICA_ELEMENT_TT
+};
+
+// One level, as the kernel sees it.
+typedef struct {
+  MICA_INT width, height;       // of the map, texels
+  MICA_INT groups_x, groups_y;  // groups a period; the last ones may be cut
+  MICA_INT group_size;          // texels a side
+  MICA_FLOAT spread;            // largest sqrt(2 v) of a variance v of an element's position, texels
+} mica_pyramid_level;
+
+// One query in texel units.
+typedef struct {
+  mica_map_query map;
+  MICA_FLOAT cov_xx, cov_xy, cov_yy;   // the footprint's covariance, texels^2
+  MICA_FLOAT inverse_minor_variance;   // 1 / its smaller eigenvalue
+} mica_pyramid_query;
+
+#ifdef __cplusplus
+static_assert(sizeof(mica_pyramid_level) == 24 && offsetof(mica_pyramid_level, spread) == 20);
+static_assert(sizeof(mica_pyramid_query) == 80 && offsetof(mica_pyramid_query, inverse_minor_variance) == 76);
+}  // namespace mica::device_types
+#endif
+
+#undef MICA_INT
+#undef MICA_FLOAT
+#endif  // MICA_PYRAMID_TYPES_H
