@@ -7,6 +7,8 @@
 
 #include "host/base/stopwatch.h"
 #include "host/engine/auto_evaluator.h"
+#include "host/engine/glint_plan.h"
+#include "host/engine/grid_brdf.h"
 #include "host/engine/make_evaluator.h"
 #include "host/engine/make_patch_brdf.h"
 #include "host/engine/ndf_brdf.h"
@@ -38,6 +40,7 @@ BuiltJob::BuiltJob(const Job& job, const Plan& plan, Device& device)
       scene_(make_scene()) {
   const Stopwatch watch;
   evaluators_.resize(surfaces_.size());
+  glints_.resize(surfaces_.size());
   brdfs_.resize(surfaces_.size());
   for (std::size_t n = 0; n < surfaces_.size(); ++n) build_evaluator(n);
   build_seconds_ = watch.seconds();
@@ -48,29 +51,40 @@ void BuiltJob::build_evaluator(std::size_t n) {
   past_device_seconds_ += device_seconds_of(n);
   brdfs_[n].reset();  // buffers go before the new ones come
   evaluators_[n].reset();
+  glints_[n] = nullptr;
   if (planned.asks_densities) evaluators_[n] = make_density_evaluator(n);
-  if (planned.patch_brdf) {
-    brdfs_[n] = make_patch_brdf(planned.evaluator, device_, surfaces_[n],
-                                {planned.masking, planned.elements, planned.compensation, planned.energy});
-  } else if (plan_.gathers_light) {
-    // Of the densities, that of triangles alone is that of the surface's normals, and not an approximation.
-    const auto draws =
-        planned.evaluator == "triangles" ? NdfBrdf::Draws::surface_normals : NdfBrdf::Draws::smooth_lobe;
-    brdfs_[n] = std::make_unique<NdfBrdf>(*evaluators_[n], surfaces_[n], draws);
-  }
+  if (planned.patch_brdf || plan_.gathers_light) brdfs_[n] = make_brdf(n);
+}
+
+std::unique_ptr<PatchBrdf> BuiltJob::make_brdf(std::size_t n) const {
+  const PlannedEvaluator& planned = plan_.evaluators[n];
+  if (planned.glints_material >= 0)
+    return std::make_unique<GridBrdf>(device_, *job_.scene.materials[planned.glints_material].glints);
+  if (planned.patch_brdf)
+    return make_patch_brdf(planned.evaluator, device_, *surfaces_[n],
+                           {planned.masking, planned.elements, planned.compensation, planned.energy});
+  // Of the densities, that of triangles alone is that of the surface's normals, and not an approximation.
+  const auto draws =
+      planned.evaluator == "triangles" ? NdfBrdf::Draws::surface_normals : NdfBrdf::Draws::smooth_lobe;
+  return std::make_unique<NdfBrdf>(*evaluators_[n], *surfaces_[n], draws);
 }
 
 std::unique_ptr<Evaluator> BuiltJob::make_density_evaluator(std::size_t n) {
   const PlannedEvaluator& planned = plan_.evaluators[n];
+  if (planned.glints_material >= 0) {
+    auto glints = make_glint_evaluator(job_.scene.materials[planned.glints_material], device_);
+    glints_[n] = glints.get();
+    return glints;
+  }
   if (planned.evaluator == "auto") return calibrated_evaluator(n);
-  return make_evaluator(planned.evaluator, device_, surfaces_[n], planned.elements);
+  return make_evaluator(planned.evaluator, device_, *surfaces_[n], planned.elements);
 }
 
 /// `auto`, calibrated with the queries of some rows of the image.
 std::unique_ptr<Evaluator> BuiltJob::calibrated_evaluator(std::size_t n) {
   constexpr int most_rows = 24;
   constexpr std::size_t samples_a_class = 64;
-  const Surface& surface = surfaces_[n];
+  const Surface& surface = *surfaces_[n];
   const int height = job_.image.height, rows = std::min(height, most_rows);
   std::vector<Query> queries;
   for (int row = 0; row < rows; ++row)
@@ -94,7 +108,7 @@ void BuiltJob::go_to(int frame) {
   frame_ = frame;
   surface_seconds_ = scene_seconds_ = build_seconds_ = 0;
   for (std::size_t n = 0; n < surfaces_.size(); ++n) {
-    if (!moves(job_.surfaces[plan_.evaluators[n].surface_index])) continue;
+    if (!surfaces_[n] || !moves(job_.surfaces[plan_.evaluators[n].surface_index])) continue;
     const Stopwatch making;
     surfaces_[n] = make_surface_of(n, frame);
     surface_seconds_ += making.seconds();
@@ -120,11 +134,11 @@ Surface BuiltJob::make_surface_of(std::size_t n, int frame) {
   return surface;
 }
 
-std::vector<Surface> BuiltJob::make_surfaces() {
+std::vector<std::optional<Surface>> BuiltJob::make_surfaces() {
   const Stopwatch watch;
-  std::vector<Surface> surfaces;
-  for (std::size_t n = 0; n < plan_.evaluators.size(); ++n)
-    surfaces.push_back(make_surface_of(n, job_.frames.first));
+  std::vector<std::optional<Surface>> surfaces(plan_.evaluators.size());
+  for (std::size_t n = 0; n < surfaces.size(); ++n)
+    if (plan_.evaluators[n].surface_index >= 0) surfaces[n] = make_surface_of(n, job_.frames.first);
   surface_seconds_ = watch.seconds();
   return surfaces;
 }
@@ -133,8 +147,13 @@ std::vector<double> BuiltJob::masking_alphas() const {
   std::vector<double> alphas;
   for (std::size_t n = 0; n < job_.scene.materials.size(); ++n) {
     const int evaluator = plan_.evaluator_of_material[n];
-    alphas.push_back(evaluator < 0 ? kUnusedAlpha
-                                   : masking_alpha(surfaces_[evaluator], job_.scene.materials[n].roughness));
+    const MaterialDescription& material = job_.scene.materials[n];
+    if (evaluator < 0) {
+      alphas.push_back(kUnusedAlpha);
+    } else {
+      alphas.push_back(material.glints ? std::sqrt(material.glints->alpha.prod())
+                                       : masking_alpha(*surfaces_[evaluator], material.roughness));
+    }
   }
   return alphas;
 }
@@ -163,7 +182,7 @@ Scene BuiltJob::make_scene() {
 
 std::vector<const Surface*> BuiltJob::surfaces() const {
   std::vector<const Surface*> pointers;
-  for (const Surface& surface : surfaces_) pointers.push_back(&surface);
+  for (const std::optional<Surface>& surface : surfaces_) pointers.push_back(surface ? &*surface : nullptr);
   return pointers;
 }
 
@@ -196,8 +215,38 @@ PendingBlock::PendingBlock(TracedRows rows, const BuiltJob& built)
     parts_[evaluator].places.push_back(n);
     queries[evaluator].push_back(rows_.queries[n].query);
   }
-  for (std::size_t n = 0; n < parts_.size(); ++n)
-    if (!queries[n].empty()) parts_[n].pending = built.evaluator(n).start(queries[n]);
+  for (std::size_t n = 0; n < parts_.size(); ++n) {
+    if (queries[n].empty()) continue;
+    if (built.glints(n)) {
+      start_glints(n, built, queries[n]);
+    } else {
+      parts_[n].pending = built.evaluator(n).start(queries[n]);
+    }
+  }
+}
+
+void PendingBlock::start_glints(std::size_t evaluator, const BuiltJob& built,
+                                const std::vector<Query>& queries) {
+  Part& part = parts_[evaluator];
+  std::vector<GlintPoint> points;
+  points.reserve(queries.size());
+  for (const std::size_t place : part.places) points.push_back(rows_.queries[place].glints);
+  std::unique_ptr<GridDensities> pending = built.glints(evaluator)->start(queries, points);
+  const int material = built.plan().evaluators[evaluator].glints_material;
+  part.colors = built.job().scene.materials[material].glints->colors;
+  if (!part.colors.empty()) part.glints = pending.get();
+  part.pending = std::move(pending);
+}
+
+/// The mean colour of a query's glints goes into its weight.
+void PendingBlock::tint(const Part& part, const std::vector<float>& densities) {
+  for (std::size_t n = 0; n < densities.size(); ++n) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (std::size_t color = 0; color < part.colors.size(); ++color)
+      sum += part.colors[color] * static_cast<double>(part.glints->density_of_color(color, n));
+    Eigen::Vector3f& weight = rows_.queries[part.places[n]].weight;
+    if (densities[n] > 0) weight = weight.cwiseProduct((sum / densities[n]).cast<float>());
+  }
 }
 
 std::vector<float> PendingBlock::wait() {
@@ -206,6 +255,7 @@ std::vector<float> PendingBlock::wait() {
     if (!part.pending) continue;
     const std::vector<float> answers = part.pending->wait();
     for (std::size_t n = 0; n < answers.size(); ++n) densities[part.places[n]] = answers[n];
+    if (part.glints) tint(part, answers);
   }
   return densities;
 }

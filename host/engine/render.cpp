@@ -22,7 +22,8 @@ void offer(const TracedRows& rows, const std::vector<float>& densities, const Pl
     const GlintQuery& glint = rows.queries[n];
     ordinal = n > 0 && rows.queries[n - 1].pixel == glint.pixel ? ordinal + 1 : 0;
     const std::uint64_t pixel = static_cast<std::uint64_t>(rows.first_row) * width + glint.pixel;
-    sampler->offer(pixel, ordinal, glint.query, densities[n], plan.evaluator_of_material[glint.material]);
+    sampler->offer(pixel, ordinal, glint.query, densities[n], plan.evaluator_of_material[glint.material],
+                   glint.glints);
   }
 }
 

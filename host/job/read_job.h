@@ -21,6 +21,9 @@ std::vector<SurfaceDescription> read_surfaces(TableReader& job);
 std::vector<MaterialDescription> read_materials(TableReader& job,
                                                 const std::vector<SurfaceDescription>& surfaces);
 
+/// What a `[material.NAME]` says about glints without a map, `ndf = "grid"`.
+void read_glints(TableReader& material, MaterialDescription& description);
+
 /// All `[[light]]`, with their keyframes.
 void read_lights(TableReader& job, SceneDescription& scene);
 

@@ -8,6 +8,7 @@
 
 #include "host/base/cavities.h"
 #include "host/base/masking.h"
+#include "host/scene/glints_description.h"
 
 namespace mica {
 
@@ -54,6 +55,7 @@ struct MaterialDescription {
   Fresnel specular = ColorFresnel{};
   Color diffuse{0, 0, 0};  ///< Lambertian albedo
   std::optional<CoatDescription> coat = {};
+  std::optional<GlintsDescription> glints = {};  ///< of the evaluator "grid", which needs no surface
 };
 
 struct PlaneShape {  ///< square of the plane z = height, uv over its sides

@@ -46,8 +46,9 @@ const std::vector<Mistake> unknown_keys = {
     {"\"bumps\"", "\"bumps\"\nspecular = { ior = 1.5, @kk = 1 }",
      "material.gold.specular.kk: found an unknown key; expected \"ior\""},
     {"\"bumps\"", "\"bumps\"\n@\"a b\" = 1",
-     "material.gold.\"a b\": found an unknown key; expected one of: surface, repeat, ndf, masking, "
-     "elements, roughness, "
+     "material.gold.\"a b\": found an unknown key; expected one of: repeat, ndf, surface, roughness, "
+     "masking, "
+     "elements, "
      "specular, "
      "diffuse, coat"},
 };
@@ -200,10 +201,10 @@ const std::vector<Mistake> wrong_words = {
     {"\"bumps\"", "\"bumps\"\nndf = @\"reference\"",
      "material.gold.ndf: found \"reference\", which is not available in this version; expected an evaluator "
      "that "
-     "is available: triangles, gaussians, beckmanns, smooth, cavities, pyramid, auto"},
+     "is available: triangles, gaussians, beckmanns, smooth, cavities, pyramid, auto, grid"},
     {"\"bumps\"", "\"bumps\"\nndf = @\"triangle\"",
      "material.gold.ndf: found \"triangle\"; expected an evaluator that is available: triangles, gaussians, "
-     "beckmanns, smooth, cavities, pyramid, auto (did you mean \"triangles\"?)"},
+     "beckmanns, smooth, cavities, pyramid, auto, grid (did you mean \"triangles\"?)"},
     {"", "[image]\naovs = [\"uv\", @\"depth\"]",
      "image.aovs.1: found \"depth\" (a string); expected one of: ndf, uv, footprint, normal, queries"},
     {"", "[image]\naovs = [\"uv\", @\"uv\"]", "image.aovs.1: found \"uv\" again; expected each at most once"},
