@@ -71,7 +71,7 @@ void read_evaluator(TableReader& material, std::string& ndf) {
 /// Mixtures have no lobes for Catmull-Rom patches.
 void refuse_bicubic(TableReader& table, const MaterialDescription& material,
                     const std::vector<SurfaceDescription>& surfaces) {
-  if (material.ndf == "triangles") return;
+  if (material.ndf == "triangles" || material.ndf == "pyramid" || material.ndf == "auto") return;
   for (const SurfaceDescription& surface : surfaces)
     if (surface.name == material.surface && surface.interpolation == Interpolation::bicubic)
       table.report("ndf",
