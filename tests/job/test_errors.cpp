@@ -39,7 +39,7 @@ const std::vector<Mistake> unknown_keys = {
     {"", "[@lights]",
      "lights: found an unknown key; expected one of: seed, image, frames, surface, camera, material, shape, "
      "light, "
-     "background, audit (did you mean \"light\"?)"},
+     "background, accuracy, audit (did you mean \"light\"?)"},
     {"\"spectrum\"", "\"spectrum\"\n@flake_size = 3",
      std::string("surface.bumps.flake_size: found an unknown key; expected one of: generate, ") +
          surface_keys + ", interpolation"},

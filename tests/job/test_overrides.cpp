@@ -86,7 +86,7 @@ const std::vector<WrongOverride> wrong_overrides = {
     {"imaeg.width=1",
      "imaeg: found an unknown key; expected one of: seed, image, frames, surface, camera, material, shape, "
      "light, "
-     "background, audit (did you mean \"image\"?)"},
+     "background, accuracy, audit (did you mean \"image\"?)"},
     {"light.1.position=[0,0,1]",
      "found \"1\" as an index into an array of 1; expected an integer from 0 below 1"},
     {"light.-1.position=[0,0,1]",
