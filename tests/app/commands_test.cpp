@@ -143,8 +143,8 @@ TEST_F(Commands, SelftestPassesHere) {
 }
 
 TEST_F(Commands, HelpIsData) {
-  for (const char* const command :
-       {"", "eval", "ndf", "map", "map spectrum", "map flakes", "map layers", "devices", "selftest", "bench"}) {
+  for (const char* const command : {"", "eval", "ndf", "map", "map spectrum", "map flakes", "map layers",
+                                    "devices", "selftest", "bench"}) {
     const Outcome outcome = mica(std::string(command) + " --help");
     EXPECT_EQ(outcome.code, 0) << command;
     EXPECT_NE(outcome.out.find("Usage"), std::string::npos) << command;
