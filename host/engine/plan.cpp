@@ -145,7 +145,7 @@ Plan make_plan(const Job& job) {
 
   const std::size_t block = plan.rows_a_block * queries_a_row;
   for (PlannedEvaluator& evaluator : plan.evaluators) {
-    plan_structure(&evaluator);
+    if (evaluator.glints_material < 0) plan_structure(&evaluator);  // glints have nothing but their kernel
     plan.host_bytes += evaluator.host_bytes;
     plan.device_bytes += evaluator.device_bytes;
   }

@@ -101,7 +101,7 @@ TEST_F(Commands, MapMakesEveryKind) {
   make("bumps --resolution 64 --cell 16 --size 1 --aspect 2 --slope 0.5 --jitter 0.3 --seed 7",
        {"", BumpsSurface{64, 16, 1, 2, 0.5, 0.3, 7}, bilinear});
   make("waves --resolution 64 --patch 100 --wind-speed 5 --wind-direction 40 --time 2.5 --seed 7",
-       {"", WavesSurface{64, 100, 5, 40, 2.5, 7}, bilinear});
+       {"", WavesSurface{64, 100, 5, 40, 2.5, 1, 7}, bilinear});
 }
 
 TEST_F(Commands, MapAddsLayers) {
