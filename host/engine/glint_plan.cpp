@@ -23,15 +23,15 @@ GridFeatures glint_features(const GlintsDescription& glints) {
 
 int plan_glints(const std::vector<MaterialDescription>& materials, const MaterialDescription& material,
                 Plan* plan) {
-  if (plan->gathers_light && material.glints->mapping == GlintsDescription::Mapping::triplanar)
+  if (plan->gathers_light)
     throw UsageError(fmt::format(
-        "material.{}.mapping: found \"triplanar\" in light from all around; expected \"uv\" there",
+        "material.{}.ndf: found \"grid\" in light from all around; expected an evaluator on a surface there",
         material.name));
   std::vector<PlannedEvaluator>* planned = &plan->evaluators;
   const std::string kernel =
       "grid.cl " + grid_kernel_options(material.glints->distribution, glint_features(*material.glints));
   auto found = std::find_if(planned->begin(), planned->end(), [&](const PlannedEvaluator& p) {
-    return !plan->gathers_light && p.glints_material >= 0 && p.kernel == kernel &&
+    return p.glints_material >= 0 && p.kernel == kernel &&
            materials[static_cast<std::size_t>(p.glints_material)].glints->colors == material.glints->colors;
   });
   if (found == planned->end()) {
