@@ -11,9 +11,9 @@
 #include "host/base/error.h"
 #include "host/base/stopwatch.h"
 #include "host/bench/coherent.h"
-#include "host/bench/contenders.h"
 #include "host/engine/accuracy.h"
 #include "host/engine/auto_evaluator.h"
+#include "host/engine/make_evaluator.h"
 #include "host/engine/pyramid_evaluator.h"
 #include "host/engine/triangle_evaluator.h"
 #include "host/surface/random.h"
@@ -106,7 +106,7 @@ Row best_fixed(Device& device, const Surface& surface, Evaluator* triangles,
                const std::vector<float>& expected) {
   Row row{"triangles", rate(triangles, queries)};
   for (const int elements : {1, 2, 4}) {
-    const std::unique_ptr<Evaluator> evaluator = make({"gaussians", elements, "", ""}, device, surface);
+    const std::unique_ptr<Evaluator> evaluator = make_evaluator("gaussians", device, surface, elements);
     if (error_of(evaluator.get(), few, expected) > 0.01) continue;
     const double gaussians = rate(evaluator.get(), queries);
     if (gaussians > row.best_rate) row = {fmt::format("gaussians {}", elements), gaussians};
