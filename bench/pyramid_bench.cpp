@@ -1,99 +1,190 @@
-// `pyramid` prototype bench
+// `pyramid` and `auto` on 2048^2 maps: error, speed, memory and build over footprints of 1 to 4096 texels,
+// against the best fixed evaluator that keeps 1%, random footprints, in one run; and a zoom. Prints a table.
+// Errors are relative L2 against `triangles`, which keeps 1e-4 of the oracle.
+//   pyramid_bench [SURFACE... | FILE.exr...] [--quick]
+
 #include <fmt/format.h>
 
-#include <cstdlib>
-#include <ctime>
-#include <numeric>
+#include <algorithm>
+#include <cmath>
 
 #include "host/base/error.h"
 #include "host/base/stopwatch.h"
 #include "host/bench/coherent.h"
+#include "host/bench/contenders.h"
 #include "host/engine/accuracy.h"
+#include "host/engine/auto_evaluator.h"
 #include "host/engine/pyramid_evaluator.h"
 #include "host/engine/triangle_evaluator.h"
-#include "host/reference/oracle.h"
 #include "host/surface/random.h"
 
 namespace mica::bench {
 namespace {
 
-Surface make(const std::string& kind) {
+constexpr int kRepeats = 11;
+constexpr double kSecondsARepeat = 0.03;
+constexpr double kPi = 3.14159265358979323846;
+
+Surface make_named(const std::string& name) {
   SurfaceDescription description;
-  if (kind == "spectrum") description.source = SpectrumSurface{};
-  if (kind == "small") description.source = SpectrumSurface{256, 0.15, 8, 3};
-  if (kind == "brushed") description.source = BrushedSurface{};
-  if (kind == "flakes") {
+  description.name = name;
+  if (name == "spectrum") {
+    description.source = SpectrumSurface{};
+  } else if (name == "brushed") {
+    description.source = BrushedSurface{};
+  } else if (name == "flakes") {
     description.source = FlakesSurface{};
     description.interpolation = Interpolation::nearest;
+  } else if (name == "scratches") {
+    description.source = ScratchesSurface{};
+  } else {
+    MapFile file;
+    file.path = name;
+    file.invalid = TexelRepair::repair;
+    description.source = file;
   }
-  if (kind == "scratches") description.source = ScratchesSurface{};
   return make_surface(description, nullptr);
 }
 
-std::vector<Query> random_queries(const Surface& surface, double sigma, double roughness, std::size_t count) {
+/// Random footprints, each with a normal under it blurred by the roughness.
+std::vector<Query> random_queries(const Surface& surface, double sigma_texels, double roughness,
+                                  std::size_t count) {
   std::vector<Query> queries(count);
   for (std::size_t n = 0; n < count; ++n) {
     const auto random = [&](std::uint64_t stream) { return synthesis::random_unit(7, stream, n); };
-    queries[n].footprint = make_footprint(surface, {random(0), random(1)}, sigma, sigma, 0);
-    const double r = std::sqrt(-2 * std::log(1 - random(4))), phi = 2 * M_PI * random(5);
-    const double r2 = std::sqrt(-2 * std::log(1 - random(6))), phi2 = 2 * M_PI * random(7);
-    const Eigen::Vector2d m = queries[n].footprint.mean_uv;
-    const long i = static_cast<long>(std::floor(m.x() * surface.width() + sigma * r2 * std::cos(phi2))),
-               j = static_cast<long>(std::floor(m.y() * surface.height() + sigma * r2 * std::sin(phi2)));
-    queries[n].half_vector =
-        (surface.texel(i, j) + roughness * r * Eigen::Vector2d(std::cos(phi), std::sin(phi)))
-            .cwiseMax(-1)
-            .cwiseMin(1);
+    const auto disk = [&](std::uint64_t stream) {
+      const double radius = std::sqrt(-2 * std::log(1 - random(stream))),
+                   angle = 2 * kPi * random(stream + 1);
+      return Eigen::Vector2d(radius * std::cos(angle), radius * std::sin(angle));
+    };
+    queries[n].footprint = make_footprint(surface, {random(0), random(1)}, sigma_texels, sigma_texels, 0);
+    const Eigen::Vector2d place =
+        Eigen::Vector2d(random(0) * surface.width(), random(1) * surface.height()) + sigma_texels * disk(2);
+    const Eigen::Vector2d& normal = surface.texel(std::lround(place.x()), std::lround(place.y()));
+    queries[n].half_vector = (normal + roughness * disk(4)).cwiseMax(-1).cwiseMin(1);
     queries[n].roughness = roughness;
   }
   return queries;
 }
 
-int run(int argc, char** argv) {
-  Device device(0);
-  const std::string kind = argv[1];
-  const double roughness = std::atof(argv[2]);
-  PyramidSettings settings;
-  if (argc > 4) settings.precision.block_ratio = std::atof(argv[4]);
-  if (argc > 5) settings.precision.cell_ratio = std::atof(argv[5]);
-  if (argc > 6) settings.precision.cutoff_error = std::atof(argv[6]);
-  if (argc > 7) settings.level_bytes = static_cast<std::size_t>(std::atof(argv[7]) * (1 << 20));
-  const int checks = argc > 8 ? std::atoi(argv[8]) : 200;
-  const Surface surface = make(kind);
-  const reference::Oracle oracle(surface, 1e-4);
-  PyramidEvaluator pyramid(device, surface, settings);
-  settings.count_elements = true;
-  PyramidEvaluator counter(device, surface, settings);
-  for (char* p = argv[3]; *p;) {
-    const double sigma = std::strtod(p, &p);
-    if (*p == ',') ++p;
-    const auto queries = random_queries(surface, sigma, roughness, 1 << 14);
-    const auto choice = pyramid.choose(queries[0]);
-    const bool slow = !choice;
-    const auto batch = thinned(queries, slow ? 64 : 1);
-    pyramid.evaluate(thinned(queries, 1024));
-    double best = 1e9;
-    for (int k = 0; k < 2; ++k) {
-      const std::clock_t w = std::clock();
-      pyramid.evaluate(batch);
-      best = std::min(best, 0.5 * double(std::clock() - w) / CLOCKS_PER_SEC);
-    }
-    const auto few = thinned(queries, queries.size() / checks);
-    const Stopwatch w;
-    const double error = relative_l2(pyramid.evaluate(few), oracle.evaluate(few));
-    const double t = w.seconds();
-    double count = 0;
-    if (choice) {
-      const auto c = counter.evaluate(batch);
-      count = std::accumulate(c.begin(), c.end(), 0.0) / c.size();
-    }
+/// Queries a second: the median of the repeats after a warm-up, on as many queries as take about 0.03 s.
+double rate(Evaluator* evaluator, const std::vector<Query>& queries) {
+  std::size_t count = 16;
+  for (; count < queries.size(); count = std::min(4 * count, queries.size())) {
+    const Stopwatch watch;
+    evaluator->evaluate({queries.begin(), queries.begin() + static_cast<long>(count)});
+    if (watch.seconds() > kSecondsARepeat) break;
+  }
+  const std::vector<Query> batch(queries.begin(), queries.begin() + static_cast<long>(count));
+  std::vector<double> seconds;
+  for (int repeat = 0; repeat < kRepeats; ++repeat) {
+    const Stopwatch watch;
+    evaluator->evaluate(batch);
+    seconds.push_back(watch.seconds());
+  }
+  return static_cast<double>(count) / timing_of(seconds).median_seconds;
+}
+
+double error_of(Evaluator* evaluator, const std::vector<Query>& queries, const std::vector<float>& expected) {
+  const std::vector<float> densities = evaluator->evaluate(queries);
+  double squares = 0, references = 0;
+  for (std::size_t n = 0; n < queries.size(); ++n) {
+    squares += std::pow(densities[n] - expected[n], 2);
+    references += std::pow(expected[n], 2);
+  }
+  return std::sqrt(squares / references);
+}
+
+struct Row {
+  std::string best_fixed = "-";
+  double best_rate = 0;
+};
+
+/// The fastest of the evaluators of texels that keep 1% here.
+Row best_fixed(Device& device, const Surface& surface, Evaluator* triangles,
+               const std::vector<Query>& queries, const std::vector<Query>& few,
+               const std::vector<float>& expected) {
+  Row row{"triangles", rate(triangles, queries)};
+  for (const int elements : {1, 2, 4}) {
+    const std::unique_ptr<Evaluator> evaluator = make({"gaussians", elements, "", ""}, device, surface);
+    if (error_of(evaluator.get(), few, expected) > 0.01) continue;
+    const double gaussians = rate(evaluator.get(), queries);
+    if (gaussians > row.best_rate) row = {fmt::format("gaussians {}", elements), gaussians};
+    break;  // more elements are slower
+  }
+  return row;
+}
+
+void measure(Device& device, const std::string& name, double roughness, bool quick) {
+  const Surface surface = make_named(name);
+  TriangleEvaluator triangles(device, surface);
+  PyramidEvaluator pyramid(device, surface);
+  std::vector<double> sigmas = {1, 2, 4, 8, 16, 32, 64, 128, 512, 4096};
+  if (quick) sigmas = {8, 32, 128, 512};
+  for (const double sigma : sigmas) {
+    const std::vector<Query> queries = random_queries(surface, sigma, roughness, 1 << 16);
+    const std::vector<Query> few = thinned(queries, sigma > 64 ? 2048 : 512);
+    const std::vector<float> expected = triangles.evaluate(few);
+    const double pyramid_error = error_of(&pyramid, few, expected);
+    AutoEvaluator chooser(device, surface, 0.01);
+    chooser.calibrate(thinned(queries, 1024));
+    const double auto_error = error_of(&chooser, few, expected);
+    const double pyramid_rate = rate(&pyramid, queries), auto_rate = rate(&chooser, queries);
+    const Row fixed = best_fixed(device, surface, &triangles, queries, few, expected);
     fmt::print(
-        "{} r={} sigma={} block={} build={:.2f}s MiB={:.1f} {:.0f} q/s  elements={:.0f} error={:.3f}% "
-        "(oracle {:.1f}s)\n",
-        kind, roughness, sigma, choice ? choice->block : 0, pyramid.build_seconds(),
-        pyramid.device_bytes() / 1048576.0, batch.size() / best, count, 100 * error, t);
+        "{:<10} {:>5} {:>5}  {:>8.3f}% {:>10.0f}  {:>8.3f}% {:>10.0f} {:>6.1f} MiB {:>7.2f}x  {:<12} {}\n",
+        name, roughness, sigma, 100 * pyramid_error, pyramid_rate, 100 * auto_error, auto_rate,
+        static_cast<double>(chooser.device_bytes()) / (1 << 20), auto_rate / fixed.best_rate,
+        fixed.best_fixed, chooser.choices().front().evaluator);
     std::fflush(stdout);
   }
+  fmt::print("{:<10} {:>5} all   built in {:.2f} s, {:.1f} MiB with the texels\n", name, roughness,
+             pyramid.build_seconds(), static_cast<double>(pyramid.device_bytes()) / (1 << 20));
+}
+
+/// 300 frames from sigma 1 to 2000: the change from frame to frame, where the level changes and where it does
+/// not.
+void zoom(Device& device, const std::string& name, double roughness) {
+  constexpr int frames = 300, half_vectors = 64;
+  const Surface surface = make_named(name);
+  PyramidEvaluator pyramid(device, surface);
+  std::vector<Query> queries = random_queries(surface, 200, roughness, half_vectors);
+  std::vector<float> last;
+  std::vector<double> changes(frames, 0);
+  std::vector<bool> level_changes(frames, false);
+  int last_block = 0;
+  for (int frame = 0; frame < frames; ++frame) {
+    const double sigma = std::pow(2000, frame / (frames - 1.0));
+    for (Query& query : queries) query.footprint = make_footprint(surface, {0.37, 0.61}, sigma, sigma, 0);
+    const std::vector<float> densities = pyramid.evaluate(queries);
+    const auto choice = pyramid.choose(queries.front());
+    const int block = choice ? choice->block + (choice->uniform ? 1 : 0) : 0;
+    if (frame > 0) changes[frame] = error_of(&pyramid, queries, last);
+    level_changes[frame] = frame > 0 && block != last_block;
+    last_block = block, last = densities;
+  }
+  double worst = 0;
+  for (int frame = 2; frame + 1 < frames; ++frame)
+    if (level_changes[frame])
+      worst = std::max(worst, changes[frame] / std::max(changes[frame - 1], changes[frame + 1]));
+  const auto most = std::max_element(changes.begin(), changes.end());
+  fmt::print(
+      "{} roughness {}: largest change between frames {:.2f}%; at level changes up to {:.2f} times that of "
+      "the "
+      "frames beside it\n",
+      name, roughness, 100 * *most, worst);
+}
+
+int run(std::vector<std::string> names, bool quick) {
+  Device device(0);
+  if (names.empty()) names = {"spectrum", "brushed", "flakes", "scratches"};
+  fmt::print("device {}; random footprints, wall clock, median of {}\n", device.info().name, kRepeats);
+  fmt::print("{:<10} {:>5} {:>5}  {:>9} {:>10}  {:>9} {:>10} {:>10} {:>8}  {:<12} {}\n", "surface", "rough",
+             "sigma", "pyramid", "queries/s", "auto 1%", "queries/s", "memory", "of best", "best fixed",
+             "auto's choice");
+  for (const std::string& name : names)
+    for (const double roughness : {0.02, 0.005}) measure(device, name, roughness, quick);
+  for (const std::string& name : names) zoom(device, name, 0.02);
   return 0;
 }
 
@@ -101,5 +192,14 @@ int run(int argc, char** argv) {
 }  // namespace mica::bench
 
 int main(int argc, char** argv) {
-  return mica::bench::run(argc, argv);
+  try {
+    std::vector<std::string> names(argv + 1, argv + argc);
+    const auto quick = std::remove(names.begin(), names.end(), "--quick");
+    const bool is_quick = quick != names.end();
+    names.erase(quick, names.end());
+    return mica::bench::run(names, is_quick);
+  } catch (const mica::Error& error) {
+    fmt::print(stderr, "pyramid_bench: {}\n", error.what());
+    return static_cast<int>(error.code());
+  }
 }

@@ -19,7 +19,7 @@ static inline wave_uint glint_mix(wave_uint x) {
 }
 
 // Of the spatial cell (i, j); i and j count modulo 2^31.
-static inline wave_uint glint_spatial_key(wave_uint i, wave_uint j, wave_uint level, uint seed) {
+static inline wave_uint glint_spatial_key(wave_uint i, wave_uint j, wave_uint level, wave_uint seed) {
   const wave_uint row = glint_mix((j & 0x7fffffffu) * 0x9e3779b1u + level * 0x85ebca77u + seed);
   return glint_mix(row + (i & 0x7fffffffu) * 0xc2b2ae3du);
 }
@@ -45,6 +45,11 @@ static inline glint_bits glint_draw(wave_uint spatial_key, wave_uint angular_key
   result.angle = glint_mix(result.place + 0x9e3779b9u);
   result.roulette = (result.place + result.angle) * 0x2545f495u;
   return result;
+}
+
+// 32 more: whether the glint is there (upper 16), and its colour.
+static inline wave_uint glint_draw_more(glint_bits bits) {
+  return glint_mix(bits.angle + 0x3c6ef372u);
 }
 
 #endif  // MICA_GLINT_HASH_H

@@ -55,6 +55,10 @@ enum {
   MICA_GLINT_INVERSE_ALPHA_Y,
   MICA_GLINT_MICRO_S,  // standard deviation of one glint's lobe on the disk of half vectors
   MICA_GLINT_MICRO_T,
+  MICA_GLINT_SEED,        // int
+  MICA_GLINT_SHARE,       // of the light, for this process
+  MICA_GLINT_PRESENCE,    // share of its glints that are there: share * kept
+  MICA_GLINT_BRIGHTNESS,  // 1 / kept: of the glints that are there
   MICA_GLINT_FIELDS,
   MICA_GLINT_PADDING = 256  // queries: a batch is padded to whole work-groups
 };

@@ -88,6 +88,7 @@ nlohmann::json summary(const EvalOptions& options, const Subject& subject, const
   json[subject.is_grid ? "glints" : "map"] = describe(options, subject);
   json["evaluator"] = open.evaluator->name();
   if (options.tolerance) json["tolerance"] = *options.tolerance;
+  if (nlohmann::json choices = describe_choices(open); !choices.empty()) json["auto"] = std::move(choices);
   json["device"] = open.device ? describe_device(open.device->info()) : nlohmann::json();
   json["device_bytes"] = open.evaluator->device_bytes();
   json["seconds"] = {
@@ -133,6 +134,8 @@ int run(const EvalOptions& options) {
   const OpenEvaluator open = subject.is_grid ? open_grid(subject.grid, options.device)
                                              : open_evaluator(options.ndf, options.tolerance, options.device,
                                                               *subject.surface, options.elements);
+  if (!subject.is_grid)
+    calibrate(open, *subject.surface, table.size(), [&](std::size_t row) { return table.query(row); });
   times.build = lap(&start);
   const std::vector<float> densities =
       evaluate_all(open.evaluator.get(), table.size(), [&](std::size_t row) { return table.query(row); });
@@ -223,7 +226,9 @@ void add_eval(CLI::App& app, Command* chosen) {
       ->type_name("SIGMA");
   command
       ->add_option("--tolerance", options->tolerance,
-                   "Relative error allowed; triangles keeps 1e-4, reference takes 1e-12 to 0.1")
+                   "Relative error allowed: auto keeps it as relative L2 (default 0.01), triangles keeps "
+                   "1e-4, reference "
+                   "takes 1e-12 to 0.1")
       ->type_name("ERROR");
   command->add_option("--queries", options->queries, "Table of queries, .npy or .csv")
       ->required()

@@ -3,13 +3,17 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <spdlog/spdlog.h>
+
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 
 #include "host/app/interrupt.h"
 #include "host/app/progress.h"
 #include "host/base/error.h"
+#include "host/engine/auto_evaluator.h"
 #include "host/engine/grid_evaluator.h"
 #include "host/engine/make_evaluator.h"
 #include "host/reference/oracle.h"
@@ -20,6 +24,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double kTrianglesTolerance = 1e-4;  // what `triangles` keeps, relative
+constexpr double kAutoTolerance = 0.01;       // relative L2 that `auto` keeps unless it is told
 constexpr double kMinOracleTolerance = 1e-12, kMaxOracleTolerance = 0.1;
 
 double seconds_since(Clock::time_point start) {
@@ -64,6 +69,7 @@ class ReferenceEvaluator : public Evaluator {
 
 std::vector<std::string> ndf_names() {
   std::vector<std::string> names = evaluator_names();
+  names.push_back("auto");
   names.push_back("reference");
   return names;
 }
@@ -74,9 +80,13 @@ void check_tolerance(const std::string& name, std::optional<double> tolerance) {
     if (!(*tolerance >= kMinOracleTolerance && *tolerance <= kMaxOracleTolerance))
       throw UsageError(fmt::format("--tolerance {}: reference takes {} to {}", *tolerance,
                                    kMinOracleTolerance, kMaxOracleTolerance));
+  } else if (name == "auto") {
+    if (!(*tolerance >= AutoEvaluator::kLeastTolerance && *tolerance < 1))
+      throw UsageError(fmt::format("--tolerance {}: auto takes {} to 1; for less use triangles or reference",
+                                   *tolerance, AutoEvaluator::kLeastTolerance));
   } else if (name != "triangles") {
-    throw UsageError(
-        fmt::format("--tolerance {}: {} promises no error; triangles and reference do", *tolerance, name));
+    throw UsageError(fmt::format("--tolerance {}: {} promises no error; auto, triangles and reference do",
+                                 *tolerance, name));
   } else if (!(*tolerance >= kTrianglesTolerance)) {
     throw UsageError(
         fmt::format("--tolerance {}: {} keeps a relative error of {}; for less use --ndf reference",
@@ -93,9 +103,39 @@ OpenEvaluator open_evaluator(const std::string& name, std::optional<double> tole
         surface, tolerance.value_or(reference::Oracle::default_tolerance));
   } else {
     open.device = std::make_unique<Device>(device_index);
-    open.evaluator = make_evaluator(name, *open.device, surface, elements);
+    open.evaluator = name == "auto" ? std::make_unique<AutoEvaluator>(*open.device, surface,
+                                                                      tolerance.value_or(kAutoTolerance))
+                                    : make_evaluator(name, *open.device, surface, elements);
   }
   return open;
+}
+
+void calibrate(const OpenEvaluator& open, const Surface& surface, std::size_t count,
+               const std::function<Query(std::size_t)>& query) {
+  constexpr std::size_t samples_a_class = 64;
+  auto* const chooser = dynamic_cast<AutoEvaluator*>(open.evaluator.get());
+  if (chooser == nullptr) return;
+  chooser->calibrate(calibration_sample(count, samples_a_class, surface.width(), surface.height(), query));
+  for (const AutoChoice& choice : chooser->choices())
+    spdlog::info(
+        "auto: footprints of about {:.3g} texels, roughness from {:.3g}: {}; relative L2 {:.2g}, at most "
+        "{:.2g}",
+        std::exp2(choice.kind.size), 0.02 * std::exp2(0.5 * choice.kind.roughness), choice.evaluator,
+        choice.relative_l2, choice.upper_bound);
+}
+
+nlohmann::json describe_choices(const OpenEvaluator& open) {
+  nlohmann::json list = nlohmann::json::array();
+  if (const auto* const chooser = dynamic_cast<const AutoEvaluator*>(open.evaluator.get());
+      chooser != nullptr)
+    for (const AutoChoice& choice : chooser->choices())
+      list.push_back({{"footprint_texels", std::exp2(choice.kind.size)},
+                      {"roughness", 0.02 * std::exp2(0.5 * choice.kind.roughness)},
+                      {"evaluator", choice.evaluator},
+                      {"samples", choice.samples},
+                      {"relative_l2", choice.relative_l2},
+                      {"upper_bound", choice.upper_bound}});
+  return list;
 }
 
 OpenEvaluator open_grid(const GlintGrid& grid, int device_index) {

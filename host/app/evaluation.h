@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -30,6 +31,13 @@ struct OpenEvaluator {
 /// Throws DeviceError, and UsageError for a tolerance that the evaluator cannot keep.
 OpenEvaluator open_evaluator(const std::string& name, std::optional<double> tolerance, int device_index,
                              const Surface& surface, int elements);
+
+/// For `auto`: chooses by a sample of queries 0 .. count - 1, and logs the choices. Others need none.
+void calibrate(const OpenEvaluator& open, const Surface& surface, std::size_t count,
+               const std::function<Query(std::size_t)>& query);
+
+/// What `auto` chose for each kind of query; empty for others.
+nlohmann::json describe_choices(const OpenEvaluator& open);
 
 /// `grid`, which needs no surface.
 OpenEvaluator open_grid(const GlintGrid& grid, int device_index);

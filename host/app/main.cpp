@@ -46,7 +46,7 @@ int main(int argc, char** argv) {
   try {
     return run(argc, argv);
   } catch (const mica::app::Interrupted& interrupted) {
-    fmt::print(stderr, "mica: stopped by signal {}; nothing was written\n", interrupted.signal());
+    fmt::print(stderr, "mica: stopped by signal {}; nothing unfinished was written\n", interrupted.signal());
     return 128 + interrupted.signal();
   } catch (const mica::Error& error) {
     fmt::print(stderr, "mica: {}\n", error.what());

@@ -12,6 +12,7 @@
 #include "host/app/evaluation.h"
 #include "host/app/map_options.h"
 #include "host/app/output.h"
+#include "host/app/query_table.h"
 #include "host/base/error.h"
 #include "host/base/version.h"
 #include "host/engine/map_query.h"
@@ -22,7 +23,7 @@ namespace {
 
 struct NdfOptions {
   MapOptions map;
-  std::string ndf, output;
+  std::string ndf, output, centers;
   std::vector<double> center_uv, sigma, window = {0, 0, 1};
   double roughness = 0;
   int size = 512, device = 0, elements = 1;
@@ -36,7 +37,7 @@ Footprint footprint(const NdfOptions& options, const Surface& surface) {
   const Eigen::Vector2d a = major * Eigen::Vector2d(std::cos(angle), std::sin(angle)).cwiseProduct(texel_uv);
   const Eigen::Vector2d b = minor * Eigen::Vector2d(-std::sin(angle), std::cos(angle)).cwiseProduct(texel_uv);
   Footprint result;
-  result.mean_uv = {options.center_uv[0], options.center_uv[1]};
+  if (!options.center_uv.empty()) result.mean_uv = {options.center_uv[0], options.center_uv[1]};
   result.cov_uv = a * a.transpose() + b * b.transpose();
   return result;
 }
@@ -81,7 +82,10 @@ double preview_exposure(std::vector<float> values) {
 }
 
 void check(const NdfOptions& options) {
-  check_extension(options.output, {".exr", ".png"});
+  if (options.centers.empty() == options.center_uv.empty())
+    throw UsageError("expected either --center, for one image, or --centers, for many");
+  check_extension(options.output, options.centers.empty() ? std::vector<std::string>{".exr", ".png"}
+                                                          : std::vector<std::string>{".npy"});
   prepare_output(options.output);
   if (options.sigma.size() == 2) throw UsageError("--sigma: expected TEXELS or TEXELS,TEXELS,DEGREES");
   for (const double value : options.sigma)
@@ -101,10 +105,12 @@ Image evaluate(const NdfOptions& options, const Surface& surface) {
   if (!problem.empty()) throw UsageError(problem);
 
   const OpenEvaluator open = open_evaluator(options.ndf, {}, options.device, surface, options.elements);
-  const std::vector<float> densities = evaluate_all(open.evaluator.get(), pixels.size(), [&](std::size_t n) {
+  const auto query_of = [&](std::size_t n) {
     query.half_vector = window.half_vector(pixels[n]);
     return query;
-  });
+  };
+  calibrate(open, surface, pixels.size(), query_of);
+  const std::vector<float> densities = evaluate_all(open.evaluator.get(), pixels.size(), query_of);
 
   Image image;
   image.width = image.height = options.size;
@@ -126,8 +132,45 @@ Image evaluate(const NdfOptions& options, const Surface& surface) {
   return image;
 }
 
+/// Images of many footprints that differ in their centre: a row each, pixels from the top left.
+int run_centers(const NdfOptions& options) {
+  const Table centers = read_query_table(options.centers, {"u", "v", "roughness"});
+  SurfaceReport report;
+  const Surface surface = load_map(options.map, &report);
+  const DiskWindow window(options.window, options.size);
+  const std::vector<std::size_t> pixels = window.pixels();
+  Query query;
+  query.footprint = footprint(options, surface);
+  const auto take_center = [&](std::size_t row) {
+    query.footprint.mean_uv = {centers.at(row, 0), centers.at(row, 1)};
+    query.roughness = centers.columns > 2 ? centers.at(row, 2) : options.roughness;
+  };
+  const auto query_of = [&](std::size_t n) {
+    take_center(n / pixels.size());
+    query.half_vector = window.half_vector(pixels[n % pixels.size()]);
+    return query;
+  };
+  check_rows(options.centers, centers.rows, [&](std::size_t row) {
+    take_center(row);
+    return query_problem(query, surface.width(), surface.height());
+  });
+  const OpenEvaluator open = open_evaluator(options.ndf, {}, options.device, surface, options.elements);
+  const std::size_t count = centers.rows * pixels.size();
+  constexpr std::size_t looked_at = 1 << 16;  // by the calibration: the footprints are all of one size
+  const std::size_t stride = std::max<std::size_t>(count / looked_at, 1);
+  calibrate(open, surface, count / stride, [&](std::size_t n) { return query_of(n * stride); });
+  const std::vector<float> densities = evaluate_all(open.evaluator.get(), count, query_of);
+  const std::size_t columns = static_cast<std::size_t>(options.size) * options.size;
+  std::vector<float> images(centers.rows * columns);
+  for (std::size_t n = 0; n < count; ++n)
+    images[n / pixels.size() * columns + pixels[n % pixels.size()]] = densities[n];
+  write_file_atomically(options.output, to_npy(images, columns));
+  return 0;
+}
+
 int run(const NdfOptions& options) {
   check(options);
+  if (!options.centers.empty()) return run_centers(options);
   SurfaceReport report;
   const Surface surface = load_map(options.map, &report);
   const Image image = evaluate(options, surface);
@@ -164,8 +207,13 @@ void add_ndf(CLI::App& app, Command* chosen) {
   add_map_options(command, &options->map);
   command->get_option("--map")->required();
   add_numbers(command, "--center", &options->center_uv, 2, 2,
-              "Mean of the Gaussian footprint, in map periods: the map is [0,1)^2", "U,V")
-      ->required();
+              "Mean of the Gaussian footprint, in map periods: the map is [0,1)^2", "U,V");
+  command
+      ->add_option("--centers", options->centers,
+                   "Many footprints: rows u v [roughness] of a .npy or .csv file; the output is a .npy of a "
+                   "row a footprint, its "
+                   "pixels from the top left")
+      ->type_name("FILE");
   add_numbers(command, "--sigma", &options->sigma, 1, 3,
               "Standard deviation of the footprint; or of both axes, and the angle from u to the first",
               "TEXELS[,TEXELS,DEGREES]")
@@ -185,7 +233,7 @@ void add_ndf(CLI::App& app, Command* chosen) {
       ->capture_default_str();
   add_numbers(command, "--window", &options->window, 3, 3,
               "Part of the disk that is shown: its centre and half its side", "S,T,RADIUS");
-  command->add_option("-o,--output", options->output, "The image, .exr or .png")
+  command->add_option("-o,--output", options->output, "The image, .exr or .png; with --centers .npy")
       ->required()
       ->type_name("FILE");
   command

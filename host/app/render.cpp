@@ -2,8 +2,11 @@
 #include <spdlog/spdlog.h>
 
 #include <filesystem>
+#include <optional>
+#include <set>
 
 #include "host/app/commands.h"
+#include "host/app/frame_range.h"
 #include "host/app/interrupt.h"
 #include "host/app/output.h"
 #include "host/app/progress.h"
@@ -37,33 +40,88 @@ OutputNames output_names(const Options& options) {
   throw UsageError(fmt::format("-o {}: expected a file name that ends in .exr or .png", wanted.string()));
 }
 
-int run(const Options& options) {
-  if (!options.frames.empty() && options.frames != "0" && options.frames != "0-0")
-    throw UsageError(fmt::format("--frames {}: the job has one frame, 0", options.frames));
-  const OutputNames names = output_names(options);
-  const Job job = load_job(options.job, options.overrides);
-  const Plan plan = make_plan(job);
-  Device device(options.device);
-  for (const std::string& path : {names.exr, names.png, options.json})
-    if (!path.empty()) prepare_output(path);
+/// Names of one frame's files; numbered when the job has frames.
+OutputNames names_of_frame(const OutputNames& names, const Job& job, int frame) {
+  if (!job.frames.given) return names;
+  return {numbered(names.exr, frame), numbered(names.png, frame)};
+}
 
-  Progress progress("rows", options.quiet);
-  if (!options.quiet) fmt::print(stderr, "{}", describe(plan));
-  const RenderResult result = render(job, plan, device, [&](int done, int rows) {
-    check_interrupt();
-    progress.update(done, rows);
-  });
-  for (const std::string& note : result.surface_notes) spdlog::info("{}", note);
-  for (const std::string& warning : result.surface_warnings) spdlog::warn("{}", warning);
+/// Renders the frames of a job one after the other, and keeps on when one fails.
+class FrameLoop {
+ public:
+  FrameLoop(const Options& options, const Job& job, const OutputNames& names, const DeviceInfo& device)
+      : options_(options), job_(job), names_(names), device_(device) {}
 
-  if (!names.exr.empty()) write_exr(names.exr, result.image);
-  write_png(names.png, result.image, job.image.exposure);
-  if (!options.json.empty()) write_file_atomically(options.json, render_json(job, device.info(), result));
-  if (!options.quiet) {
-    fmt::print(stderr, "{}", render_summary(device.info(), result));
+  void render(BuiltJob& built, int frame) {
+    try {
+      render_and_write(built, frame);
+      ++done_;
+    } catch (const Error& error) {
+      if (!job_.frames.given) throw;
+      spdlog::error("frame {}: {}", frame, error.what());
+      reports_.push_back(failure_json(frame, error.what()));
+      failed_ = error.code();
+    }
+  }
+
+  /// Of all frames, or of the only one.
+  std::string json() const { return job_.frames.given ? frames_json(reports_) : reports_.front(); }
+
+  ExitCode exit_code() const {
+    if (!failed_) return ExitCode::done;
+    return done_ > 0 ? ExitCode::some_images_failed : *failed_;
+  }
+
+ private:
+  void render_and_write(BuiltJob& built, int frame) {
+    const OutputNames names = names_of_frame(names_, job_, frame);
+    Progress progress(job_.frames.given ? fmt::format("rows of frame {}", frame) : "rows", options_.quiet);
+    const RenderResult result = render_frame(built, frame, device_, [&](int rows, int all) {
+      check_interrupt();
+      progress.update(rows, all);
+    });
+    say_once(result.surface_notes, result.surface_warnings);
+    if (!names.exr.empty()) write_exr(names.exr, result.image);
+    write_png(names.png, result.image, job_.image.exposure, job_.image.tone_map);
+    reports_.push_back(render_json(job_, device_, result));
+    if (options_.quiet) return;
+    fmt::print(stderr, "{}", render_summary(device_, result));
     fmt::print(stderr, "wrote     {}{}{}\n", names.exr, names.exr.empty() ? "" : " and ", names.png);
   }
-  return 0;
+
+  void say_once(const std::vector<std::string>& notes, const std::vector<std::string>& warnings) {
+    for (const std::string& note : notes)
+      if (said_.insert(note).second) spdlog::info("{}", note);
+    for (const std::string& warning : warnings)
+      if (said_.insert(warning).second) spdlog::warn("{}", warning);
+  }
+
+  const Options& options_;
+  const Job& job_;
+  const OutputNames& names_;
+  const DeviceInfo& device_;
+  std::set<std::string> said_;
+  std::vector<std::string> reports_;
+  int done_ = 0;
+  std::optional<ExitCode> failed_;
+};
+
+int run(const Options& options) {
+  const OutputNames names = output_names(options);
+  Job job = load_job(options.job, options.overrides);
+  choose_frames(options.frames, &job.frames);
+  const Plan plan = make_plan(job);
+  Device device(options.device);
+  const OutputNames first = names_of_frame(names, job, job.frames.first);
+  for (const std::string& path : {first.exr, first.png, options.json})
+    if (!path.empty()) prepare_output(path);
+
+  if (!options.quiet) fmt::print(stderr, "{}", describe(plan));
+  BuiltJob built(job, plan, device);
+  FrameLoop loop(options, job, names, device.info());
+  for (int frame = job.frames.first; frame <= job.frames.last; ++frame) loop.render(built, frame);
+  if (!options.json.empty()) write_file_atomically(options.json, loop.json());
+  return static_cast<int>(loop.exit_code());
 }
 
 }  // namespace
@@ -73,9 +131,11 @@ void add_render(CLI::App& app, Command* chosen) {
   CLI::App* command = app.add_subcommand("render", "Render the image of a job file");
   command->add_option("job", options->job, "Job file, TOML")->required();
   command->add_option("-o,--output", options->output,
-                      "FILE.exr (with FILE.png beside it) or FILE.png; default out/<name of the job>.exr");
+                      "FILE.exr (with FILE.png beside it) or FILE.png; default out/<name of the job>.exr; "
+                      "frames are numbered, FILE.0007.exr");
   command->add_option("--set", options->overrides, "Override a setting: key.path=value, as often as needed");
-  command->add_option("--frames", options->frames, "Frames A-B to render");
+  command->add_option("--frames", options->frames,
+                      "Frames A-B, or A, of those that the job has; default all");
   command->add_option("--device", options->device, "Number of the OpenCL device, see `mica devices`");
   command->add_option("--json", options->json, "Write what was done: plan, bytes, seconds, queries/s, audit");
   command->add_flag("--quiet", options->quiet, "No progress and no summary");

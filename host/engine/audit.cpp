@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/reference/glint_grid.h"
 #include "host/reference/oracle.h"
 
 namespace mica {
@@ -24,7 +25,7 @@ bool lower_key(const AuditSample& a, const AuditSample& b) {
 }  // namespace
 
 void AuditSampler::offer(std::uint64_t pixel, std::uint64_t ordinal, const Query& query, float density,
-                         int evaluator) {
+                         int evaluator, const GlintPoint& glints) {
   if (samples_ == 0) return;
   const std::uint64_t key = mix(mix(mix(seed_ + 0x9e3779b97f4a7c15u) ^ pixel) ^ ordinal);
   if (heap_.size() == samples_) {
@@ -32,7 +33,7 @@ void AuditSampler::offer(std::uint64_t pixel, std::uint64_t ordinal, const Query
     std::pop_heap(heap_.begin(), heap_.end(), lower_key);
     heap_.pop_back();
   }
-  heap_.push_back({key, query, density, evaluator});
+  heap_.push_back({key, query, density, evaluator, glints});
   std::push_heap(heap_.begin(), heap_.end(), lower_key);
 }
 
@@ -47,7 +48,11 @@ AuditResult audit(const std::vector<AuditSample>& samples, const std::vector<con
   result.samples = samples.size();
   if (samples.empty()) return result;
   std::vector<double> reference(samples.size());
+  for (std::size_t n = 0; n < samples.size(); ++n)
+    if (!surfaces[static_cast<std::size_t>(samples[n].evaluator)])
+      reference[n] = reference::GlintProcess(samples[n].glints).density_of(samples[n].query);
   for (std::size_t surface = 0; surface < surfaces.size(); ++surface) {
+    if (!surfaces[surface]) continue;
     std::vector<std::size_t> places;
     std::vector<Query> queries;
     for (std::size_t n = 0; n < samples.size(); ++n) {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "host/base/glints.h"
 #include "host/base/query.h"
 #include "host/surface/surface.h"
 
@@ -15,6 +16,7 @@ struct AuditSample {
   Query query;
   float density = 0;
   int evaluator = 0;
+  GlintPoint glints{};  ///< of evaluators without a surface
 };
 
 /// A uniform random sample of a job's queries. It depends on the seed and on the queries' places in the image
@@ -24,7 +26,8 @@ class AuditSampler {
   AuditSampler(std::uint64_t seed, std::size_t samples) : seed_(seed), samples_(samples) {}
 
   /// @param pixel row * width + column in the image; @param ordinal of the query within its pixel.
-  void offer(std::uint64_t pixel, std::uint64_t ordinal, const Query& query, float density, int evaluator);
+  void offer(std::uint64_t pixel, std::uint64_t ordinal, const Query& query, float density, int evaluator,
+             const GlintPoint& glints = {});
 
   /// What was kept, by key.
   std::vector<AuditSample> samples() const;
@@ -45,7 +48,8 @@ struct AuditResult {
   double maximum = 0;
 };
 
-/// Re-evaluates the samples in double precision; `surfaces` by AuditSample::evaluator.
+/// Re-evaluates the samples in double precision; `surfaces` by AuditSample::evaluator, null for `grid`, whose
+/// reference is its definition.
 AuditResult audit(const std::vector<AuditSample>& samples, const std::vector<const Surface*>& surfaces);
 
 }  // namespace mica

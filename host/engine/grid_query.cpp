@@ -44,9 +44,9 @@ void set_cell(Column* column, int cell_field, int fraction_field, double cells) 
   column->set(fraction_field, std::min(cells - whole, 1 - 0x1p-24));
 }
 
-void set_query(const Query& query, const GlintGrid& grid, Column* column) {
+void set_query(const Query& query, const GlintPoint& glints, Column* column) {
   // From uv to cells of level 0: A* with determinant one, then the resolution [Kem25 Algorithm 1].
-  const double resolution = std::sqrt(grid.density), stretch = std::sqrt(grid.stretch);
+  const double resolution = std::sqrt(double{glints.density}), stretch = std::sqrt(double{glints.stretch});
   const Eigen::Vector2d scale(resolution / stretch, resolution * stretch);
   const Eigen::Matrix2d& c = query.footprint.cov_uv;
   const double xx = c(0, 0) * scale.x() * scale.x(), yy = c(1, 1) * scale.y() * scale.y();
@@ -78,13 +78,27 @@ void set_query(const Query& query, const GlintGrid& grid, Column* column) {
   column->set(MICA_GLINT_WEIGHT, 1 - (detail - level));
   column->set(MICA_GLINT_HALF_S, query.half_vector.x());
   column->set(MICA_GLINT_HALF_T, query.half_vector.y());
-  column->set(MICA_GLINT_INVERSE_ALPHA_X, 1 / grid.alpha_x);
-  column->set(MICA_GLINT_INVERSE_ALPHA_Y, 1 / grid.alpha_y);
+  column->set(MICA_GLINT_INVERSE_ALPHA_X, 1.0 / glints.alpha_x);
+  column->set(MICA_GLINT_INVERSE_ALPHA_Y, 1.0 / glints.alpha_y);
   column->set(MICA_GLINT_MICRO_S, query.roughness / stretch);
   column->set(MICA_GLINT_MICRO_T, query.roughness * stretch);
+  column->set(MICA_GLINT_SEED, static_cast<std::int32_t>(glints.seed));
+  column->set(MICA_GLINT_SHARE, double{glints.share});
+  column->set(MICA_GLINT_PRESENCE, double{glints.share} * glints.kept);
+  column->set(MICA_GLINT_BRIGHTNESS, 1.0 / glints.kept);
 }
 
 }  // namespace
+
+GlintPoint GlintGrid::point() const {
+  GlintPoint point;
+  point.distribution = distribution;
+  point.alpha_x = static_cast<float>(alpha_x), point.alpha_y = static_cast<float>(alpha_y);
+  point.density = static_cast<float>(density);
+  point.stretch = static_cast<float>(stretch);
+  point.seed = seed;
+  return point;
+}
 
 std::string glint_grid_problem(const GlintGrid& grid) {
   if (outside(grid.alpha_x, 1e-4, 1) || outside(grid.alpha_y, 1e-4, 1))
@@ -111,13 +125,14 @@ std::string grid_query_problem(const Query& query) {
 }
 
 GridBatch to_grid_batch(const std::vector<Query>& queries, std::size_t first, std::size_t count,
-                        const GlintGrid& grid) {
+                        const std::vector<GlintPoint>& points) {
   GridBatch batch;
   batch.pitch = (count + MICA_GLINT_PADDING - 1) / MICA_GLINT_PADDING * MICA_GLINT_PADDING;
   batch.fields.resize(MICA_GLINT_FIELDS * batch.pitch);
   tbb::parallel_for(std::size_t{0}, batch.pitch, [&](std::size_t n) {
     Column column(&batch, n);
-    set_query(n < count ? queries[first + n] : Query(), grid, &column);
+    const GlintPoint& glints = points.size() == 1 || n >= count ? points.front() : points[first + n];
+    set_query(n < count ? queries[first + n] : Query(), glints, &column);
   });
   return batch;
 }

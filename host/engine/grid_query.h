@@ -4,12 +4,11 @@
 #include <string>
 #include <vector>
 
+#include "host/base/glints.h"
 #include "host/base/query.h"
 #include "kernels/types.h"
 
 namespace mica {
-
-enum class Distribution { beckmann, trowbridge_reitz };
 
 /// What a surface of glints without a map is made of. [Kem25] Table 1.
 struct GlintGrid {
@@ -18,6 +17,8 @@ struct GlintGrid {
   double density = 1e6;                 ///< cells per unit area of uv, 1 to 1e12; pi/4 of them hold a glint
   double stretch = 1;                   ///< of each glint along u, and of its lobe along t; 1/64 to 64
   std::uint32_t seed = 1;
+
+  GlintPoint point() const;  ///< the same everywhere
 };
 
 /// Why a grid cannot be evaluated, or empty when it can.
@@ -33,12 +34,13 @@ struct GridBatch {
   std::vector<std::int32_t> fields;  ///< MICA_GLINT_FIELDS x pitch; floats by their bits
 };
 
-/// Queries [first, first + count) of a batch, whose cells are found in double precision.
+/// Queries [first, first + count) of a batch, whose cells are found in double precision. @param points one
+/// for all queries, or one for each.
 ///
 /// The level of detail l is where the footprint's larger standard deviation is an eighth to a quarter of a
 /// cell, so that 2x2 cells always hold the footprint to 3e-3 of its weight [Kem25 sec. 3.3.2]. Footprints are
 /// widened by 1/128 of a cell: a degenerate one would see a glint, if any, as an infinite spike.
 GridBatch to_grid_batch(const std::vector<Query>& queries, std::size_t first, std::size_t count,
-                        const GlintGrid& grid);
+                        const std::vector<GlintPoint>& points);
 
 }  // namespace mica

@@ -11,7 +11,9 @@
 #include "host/build/map_structure.h"
 #include "host/build/mixture.h"
 #include "host/build/slope_pyramid.h"
+#include "host/engine/glint_plan.h"
 #include "host/engine/make_patch_brdf.h"
+#include "host/engine/pyramid_evaluator.h"
 #include "host/scene/scene.h"
 #include "host/surface/map_size.h"
 #include "kernels/types.h"
@@ -52,6 +54,10 @@ void plan_structure(PlannedEvaluator* planned) {
     if (planned->energy == LostEnergy::table) planned->host_bytes += footprint_energy_bytes(width, height);
     planned->kernel += fmt::format(" -DMICA_INTERPOLATION={} -DMICA_SEEDS={}",
                                    static_cast<int>(planned->interpolation), elements);
+  } else if (planned->evaluator == "pyramid" || planned->evaluator == "auto") {
+    planned->device_bytes =
+        map_structure_bytes(width, height) + 4 * PyramidSettings{}.level_bytes / 3;  // at most
+    if (planned->evaluator == "auto") planned->kernel = "chosen from a sample of the job's queries";
   } else {
     planned->device_bytes = planned->evaluator == "gaussians" ? gaussian_mixture_bytes(width, height)
                                                               : map_structure_bytes(width, height);
@@ -77,8 +83,9 @@ PlannedEvaluator plan_evaluator(const Job& job, int surface_index, const Materia
 }
 
 /// Index of the evaluator that a material needs, planned now if it is the first to need it.
-int evaluator_for(const Job& job, const MaterialDescription& material,
-                  std::vector<PlannedEvaluator>* planned) {
+int evaluator_for(const Job& job, const MaterialDescription& material, Plan* plan) {
+  std::vector<PlannedEvaluator>* planned = &plan->evaluators;
+  if (material.glints) return plan_glints(job.scene.materials, material, plan);
   const auto surface = std::find_if(job.surfaces.begin(), job.surfaces.end(),
                                     [&](const SurfaceDescription& s) { return s.name == material.surface; });
   const int surface_index = static_cast<int>(surface - job.surfaces.begin());
@@ -125,8 +132,8 @@ Plan make_plan(const Job& job) {
     for (const PartMaterial& part : shape.parts) used.insert(part.material);
   }
   for (const MaterialDescription& material : job.scene.materials)
-    plan.evaluator_of_material.push_back(
-        used.count(material.name) ? evaluator_for(job, material, &plan.evaluators) : -1);
+    plan.evaluator_of_material.push_back(used.count(material.name) ? evaluator_for(job, material, &plan)
+                                                                   : -1);
 
   plan.channels = channels_for(job.image.aovs);
   plan.queries_a_batch = kQueriesABatch;
@@ -138,7 +145,7 @@ Plan make_plan(const Job& job) {
 
   const std::size_t block = plan.rows_a_block * queries_a_row;
   for (PlannedEvaluator& evaluator : plan.evaluators) {
-    plan_structure(&evaluator);
+    if (evaluator.glints_material < 0) plan_structure(&evaluator);  // glints have nothing but their kernel
     plan.host_bytes += evaluator.host_bytes;
     plan.device_bytes += evaluator.device_bytes;
   }
@@ -153,6 +160,11 @@ Plan make_plan(const Job& job) {
 std::string describe(const Plan& plan) {
   std::string text;
   for (const PlannedEvaluator& e : plan.evaluators) {
+    if (e.glints_material >= 0) {
+      text += fmt::format("{} for {}: no map, nothing built, kernel {}\n", e.evaluator,
+                          fmt::join(e.materials, ", "), e.kernel);
+      continue;
+    }
     text += fmt::format("{} on surface {} ({} x {} texels, {}) for {}: {:.1f} MiB on the device, kernel {}\n",
                         e.evaluator, e.surface, e.width, e.height, name_of(e.interpolation),
                         fmt::join(e.materials, ", "), mebibytes(e.device_bytes), e.kernel);

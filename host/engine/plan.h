@@ -10,10 +10,11 @@ namespace mica {
 
 /// One evaluator on one surface: what is built, uploaded and compiled for it.
 struct PlannedEvaluator {
-  std::string surface;    ///< name in the job
-  std::string evaluator;  ///< e.g. "triangles"
-  int surface_index = 0;  ///< into Job::surfaces
-  int elements = 1;       ///< of a mixture, a texel and axis
+  std::string surface;       ///< name in the job; empty for "grid", which needs none
+  std::string evaluator;     ///< e.g. "triangles"
+  int surface_index = 0;     ///< into Job::surfaces; -1: none
+  int glints_material = -1;  ///< into SceneDescription::materials: whose glints these are
+  int elements = 1;          ///< of a mixture, a texel and axis
   Masking masking = Masking::exact;
   Compensation compensation = Compensation::diffuse;
   LostEnergy energy = LostEnergy::exact;

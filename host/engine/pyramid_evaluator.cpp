@@ -6,6 +6,7 @@
 
 #include "host/base/stopwatch.h"
 #include "host/engine/accuracy.h"
+#include "host/engine/collected_densities.h"
 #include "host/engine/map_query.h"
 #include "host/engine/mixture_evaluator.h"
 #include "host/engine/triangle_evaluator.h"
@@ -18,31 +19,6 @@ constexpr double kPi = 3.14159265358979323846;
 
 /// Cells narrower than this would be more than a map has texels; so small a roughness goes to the texels.
 constexpr double kNarrowestCell = 1.0 / 512;
-
-/// Answers of several evaluators, put together in the order of the queries.
-class CollectedDensities : public PendingDensities {
- public:
-  explicit CollectedDensities(std::size_t count) : densities_(count) {}
-
-  void add(std::unique_ptr<PendingDensities> pending, std::vector<std::size_t> places) {
-    parts_.push_back({std::move(pending), std::move(places)});
-  }
-  std::vector<float> wait() override {
-    for (Part& part : parts_) {
-      const std::vector<float> answers = part.pending->wait();
-      for (std::size_t n = 0; n < answers.size(); ++n) densities_[part.places[n]] = answers[n];
-    }
-    return std::move(densities_);
-  }
-
- private:
-  struct Part {
-    std::unique_ptr<PendingDensities> pending;
-    std::vector<std::size_t> places;
-  };
-  std::vector<Part> parts_;
-  std::vector<float> densities_;
-};
 
 }  // namespace
 

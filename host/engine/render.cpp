@@ -22,7 +22,8 @@ void offer(const TracedRows& rows, const std::vector<float>& densities, const Pl
     const GlintQuery& glint = rows.queries[n];
     ordinal = n > 0 && rows.queries[n - 1].pixel == glint.pixel ? ordinal + 1 : 0;
     const std::uint64_t pixel = static_cast<std::uint64_t>(rows.first_row) * width + glint.pixel;
-    sampler->offer(pixel, ordinal, glint.query, densities[n], plan.evaluator_of_material[glint.material]);
+    sampler->offer(pixel, ordinal, glint.query, densities[n], plan.evaluator_of_material[glint.material],
+                   glint.glints);
   }
 }
 
@@ -60,12 +61,13 @@ void render_rows(const BuiltJob& built, const RenderProgress& progress, AuditSam
   result->seconds.render = total.seconds();
 }
 
-std::map<std::string, std::string> describe_image(const Job& job, const DeviceInfo& device,
+std::map<std::string, std::string> describe_image(const Job& job, int frame, const DeviceInfo& device,
                                                   const AuditResult& audit) {
   std::map<std::string, std::string> metadata;
   metadata["mica:version"] = version();
   metadata["mica:job"] = fmt::format("{:016x}", job.hash);
   metadata["mica:seed"] = fmt::format("{}", job.seed);
+  if (job.frames.given) metadata["mica:frame"] = fmt::format("{}", frame);
   metadata["mica:device"] = device.name;
   if (audit.samples) {
     metadata["mica:audit"] =
@@ -77,11 +79,20 @@ std::map<std::string, std::string> describe_image(const Job& job, const DeviceIn
 
 }  // namespace
 
-RenderResult render(const Job& job, const Plan& plan, Device& device, const RenderProgress& progress) {
+RenderResult render_frame(BuiltJob& built, int frame, const DeviceInfo& device,
+                          const RenderProgress& progress) {
   const Stopwatch total;
+  const Job& job = built.job();
   RenderResult result;
-  result.plan = plan;
-  const BuiltJob built(job, plan, device);
+  result.frame = frame;
+  result.plan = built.plan();
+  double before = 0;  // seconds that building took when this began
+  if (frame == built.frame()) {
+    before = built.surface_seconds() + built.scene_seconds() + built.build_seconds();
+  } else {
+    built.go_to(frame);
+  }
+  const double device_seconds = built.device_seconds();
   AuditSampler sampler(job.seed, job.audit.samples);
   render_rows(built, progress, &sampler, &result);
 
@@ -92,12 +103,17 @@ RenderResult render(const Job& job, const Plan& plan, Device& device, const Rend
   result.seconds.scene = built.scene_seconds();
   result.seconds.build = built.build_seconds();
   result.device_bytes = built.device_bytes();
-  result.device_seconds = built.device_seconds();
+  result.device_seconds = built.device_seconds() - device_seconds;
   result.surface_notes = built.notes();
   result.surface_warnings = built.warnings();
-  result.image.metadata = describe_image(job, device.info(), result.audit);
-  result.seconds.total = total.seconds();
+  result.image.metadata = describe_image(job, frame, device, result.audit);
+  result.seconds.total = before + total.seconds();
   return result;
+}
+
+RenderResult render(const Job& job, const Plan& plan, Device& device, const RenderProgress& progress) {
+  BuiltJob built(job, plan, device);
+  return render_frame(built, job.frames.first, device.info(), progress);
 }
 
 }  // namespace mica

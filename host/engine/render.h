@@ -6,6 +6,7 @@
 
 #include "host/device/device.h"
 #include "host/engine/audit.h"
+#include "host/engine/built_job.h"
 #include "host/engine/plan.h"
 #include "host/image/image.h"
 #include "host/job/job.h"
@@ -22,6 +23,7 @@ struct PhaseSeconds {
 
 /// A finished image and what was done to make it.
 struct RenderResult {
+  int frame = 0;
   Image image;
   Plan plan;
   PhaseSeconds seconds;
@@ -35,8 +37,14 @@ struct RenderResult {
 /// Called after every block of rows with the rows done; may throw to stop.
 using RenderProgress = std::function<void(int rows_done, int rows)>;
 
-/// Renders a job by its plan: traces blocks of rows on the host while the device evaluates the block before.
-/// The image depends on the job alone, bit for bit. Throws mica::Error.
+/// Renders one frame of a job by its plan: traces blocks of rows on the host while the device evaluates the
+/// block before. The image depends on the job and the frame alone, bit for bit. Throws mica::Error.
+/// @param built at the job's first frame or at one that was rendered before. The first frame's seconds are
+/// those of everything that it needs; later ones need what changed.
+RenderResult render_frame(BuiltJob& built, int frame, const DeviceInfo& device,
+                          const RenderProgress& progress);
+
+/// Renders the first frame of a job.
 RenderResult render(const Job& job, const Plan& plan, Device& device, const RenderProgress& progress);
 
 }  // namespace mica

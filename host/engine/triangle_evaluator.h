@@ -12,7 +12,7 @@ namespace mica {
 
 struct TriangleSettings {
   /// Weight, of the largest, at which culling may drop a texel. Many texels can lie just beyond the cutoff:
-  /// the most that was seen to be lost, beside 1e-4 of the density, is 3.5 times this, of the density's peak.
+  /// 3.5 times this, of the density's peak, is lost where it shows most.
   double cutoff_error = 1e-7;
   std::size_t batch_queries =
       1 << 17;  ///< queries a launch, at most; less where the device's memory asks for it

@@ -19,12 +19,23 @@ struct Image {
 /// bytes. Throws FileError.
 void write_exr(const std::string& path, const Image& image);
 
-/// Writes R, G, B (or the only channel as grey) as an 8-bit sRGB PNG after 2^exposure scaling. Throws
-/// FileError.
-///
-/// A preview: values up to 0.8 are shown as they are, what is above rolls off towards 1, so that glints keep
-/// their colour a little longer than a clamp would. NaN is shown black.
-void write_png(const std::string& path, const Image& image, double exposure);
+/// How radiance becomes the brightness of a preview, channel by channel. [Reinhard02]: Erik Reinhard et al.,
+/// "Photographic Tone Reproduction for Digital Images", SIGGRAPH 2002. [Narkowicz16]: Krzysztof Narkowicz,
+/// "ACES Filmic Tone Mapping Curve", 2016.
+enum class ToneMap {
+  clamp,     ///< as it is, up to 1
+  shoulder,  ///< as it is up to 0.8, then towards 1, so that glints keep their colour a little longer
+  reinhard,  ///< x / (1 + x), [Reinhard02] Eq. 3
+  filmic,    ///< a film's S-shaped curve: contrast in the middle, soft ends [Narkowicz16]
+};
+
+/// Of a radiance >= 0. @return [0, 1].
+double tone_mapped(ToneMap tone_map, double radiance);
+
+/// Writes R, G, B (or the only channel as grey) as an 8-bit sRGB PNG after 2^exposure scaling. NaN is shown
+/// black. Throws FileError.
+void write_png(const std::string& path, const Image& image, double exposure,
+               ToneMap tone_map = ToneMap::shoulder);
 
 /// The bytes of the file that write_png would write. Throws FileError.
 std::string encode_png(const Image& image, double exposure);

@@ -36,22 +36,15 @@ std::string encode(const std::string& path, const char* format, const OIIO::Imag
   return std::string(buffer.begin(), buffer.end());
 }
 
-/// Identity up to the knee, then an exponential approach to 1 with the same slope at the knee.
-double roll_off(double value) {
-  constexpr double knee = 0.8;
-  if (value <= knee) return value;
-  return 1 - (1 - knee) * std::exp(-(value - knee) / (1 - knee));
-}
-
 /// IEC 61966-2-1.
 double srgb_from_linear(double value) {
   return value <= 0.0031308 ? 12.92 * value : 1.055 * std::pow(value, 1 / 2.4) - 0.055;
 }
 
-std::uint8_t display_value(float radiance, double scale) {
+std::uint8_t display_value(float radiance, double scale, ToneMap tone_map) {
   const double value = radiance * scale;
   if (!(value > 0)) return 0;  // also NaN
-  return static_cast<std::uint8_t>(std::lround(255 * srgb_from_linear(roll_off(value))));
+  return static_cast<std::uint8_t>(std::lround(255 * srgb_from_linear(tone_mapped(tone_map, value))));
 }
 
 /// Indices of R, G, B, or of the only channel.
@@ -83,7 +76,7 @@ void write_exr(const std::string& path, const Image& image) {
 
 namespace {
 
-std::string png_bytes(const std::string& path, const Image& image, double exposure) {
+std::string png_bytes(const std::string& path, const Image& image, double exposure, ToneMap tone_map) {
   check(path, image);
   const std::vector<std::size_t> channels = display_channels(path, image);
   const std::size_t pixel_count = image.pixels.size() / image.channels.size();
@@ -93,7 +86,7 @@ std::string png_bytes(const std::string& path, const Image& image, double exposu
   values.reserve(pixel_count * channels.size());
   for (std::size_t pixel = 0; pixel < pixel_count; ++pixel)
     for (const std::size_t channel : channels)
-      values.push_back(display_value(image.pixels[pixel * image.channels.size() + channel], scale));
+      values.push_back(display_value(image.pixels[pixel * image.channels.size() + channel], scale, tone_map));
 
   OIIO::ImageSpec spec(image.width, image.height, static_cast<int>(channels.size()), OIIO::TypeUInt8);
   spec.attribute("oiio:ColorSpace", "sRGB");
@@ -102,12 +95,12 @@ std::string png_bytes(const std::string& path, const Image& image, double exposu
 
 }  // namespace
 
-void write_png(const std::string& path, const Image& image, double exposure) {
-  write_file_atomically(path, png_bytes(path, image, exposure));
+void write_png(const std::string& path, const Image& image, double exposure, ToneMap tone_map) {
+  write_file_atomically(path, png_bytes(path, image, exposure, tone_map));
 }
 
 std::string encode_png(const Image& image, double exposure) {
-  return png_bytes("a picture.png", image, exposure);
+  return png_bytes("a picture.png", image, exposure, ToneMap::shoulder);
 }
 
 std::string encode_png(int width, int height, const std::vector<std::uint8_t>& srgb) {
@@ -117,7 +110,7 @@ std::string encode_png(int width, int height, const std::vector<std::uint8_t>& s
 }
 
 double displayed_value(float radiance) {
-  return radiance > 0 ? roll_off(radiance) : 0;
+  return radiance > 0 ? tone_mapped(ToneMap::shoulder, radiance) : 0;
 }
 
 }  // namespace mica

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "host/base/error.h"
+#include "host/image/image.h"
 #include "host/scene/description.h"
 #include "host/surface/description.h"
 
@@ -17,10 +18,24 @@ struct ImageSettings {
   int max_bounces = 1;            ///< reflections of light on its way to the camera, at most
   std::vector<std::string> aovs;  ///< of: ndf, uv, footprint, normal, queries
   double exposure = 0;            ///< of the PNG preview, in stops
+  ToneMap tone_map = ToneMap::shoulder;
+};
+
+/// `[frames]`
+struct FrameSettings {
+  int first = 0, last = 0;  ///< both included
+  double rate = 24;         ///< a second
+  bool given = false;       ///< the job has the table: its images are numbered
+
+  double seconds(int frame) const { return frame / rate; }
 };
 
 struct AuditSettings {
   int samples = 0;  ///< queries of the job that the oracle re-evaluates
+};
+
+struct AccuracySettings {
+  double tolerance = 0.01;  ///< relative L2 that materials with ndf = "auto" keep
 };
 
 /// A validated job: everything in range, every name resolved, every input file present.
@@ -29,9 +44,11 @@ struct Job {
   std::uint64_t hash = 0;  ///< of the text and the overrides
   std::uint64_t seed = 1;
   ImageSettings image;
+  FrameSettings frames;
   SceneDescription scene;
   std::vector<SurfaceDescription> surfaces;
   AuditSettings audit;
+  AccuracySettings accuracy;
 };
 
 /// One mistake in a job file or in an override.

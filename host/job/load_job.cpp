@@ -57,14 +57,41 @@ ImageSettings read_image(TableReader& table) {
   const std::vector<std::string_view> aovs = {"ndf", "uv", "footprint", "normal", "queries"};
   table.read("aovs", image.aovs, aovs);
   table.read("exposure", image.exposure, closed(-32, 32));
+  const Choices<ToneMap> tone_maps = {{"clamp", ToneMap::clamp},
+                                      {"shoulder", ToneMap::shoulder},
+                                      {"reinhard", ToneMap::reinhard},
+                                      {"filmic", ToneMap::filmic}};
+  table.read("tone_map", image.tone_map, tone_maps);
   return image;
+}
+
+FrameSettings read_frames(TableReader& table) {
+  const Interval numbers = closed(0, 999999);
+  FrameSettings frames;
+  frames.given = true;
+  Eigen::Vector2d range(0, 0);
+  table.require("range", "the first and the last frame");
+  table.read("range", range, numbers);
+  if (range != range.array().round().matrix() || range[0] > range[1]) {
+    table.report("range",
+                 fmt::format("found [{}, {}]; expected two whole numbers, the first not above the last",
+                             range[0], range[1]));
+    return frames;
+  }
+  frames.first = static_cast<int>(range[0]), frames.last = static_cast<int>(range[1]);
+  table.read("rate", frames.rate, closed(1e-3, 1e6));
+  return frames;
 }
 
 void read_root(TableReader& table, Job& job) {
   table.read("seed", job.seed);
   table.read_table("image", [&](TableReader& image) { job.image = read_image(image); });
+  table.read_table("frames", [&](TableReader& frames) { job.frames = read_frames(frames); });
   job.surfaces = read_surfaces(table);
   job.scene = read_scene(table, job.surfaces);
+  table.read_table("accuracy", [&](TableReader& accuracy) {
+    accuracy.read("tolerance", job.accuracy.tolerance, closed(5e-4, 0.5));
+  });
   table.read_table("audit",
                    [&](TableReader& audit) { audit.read("samples", job.audit.samples, closed(0, 1e6)); });
 }

@@ -21,7 +21,10 @@ std::vector<SurfaceDescription> read_surfaces(TableReader& job);
 std::vector<MaterialDescription> read_materials(TableReader& job,
                                                 const std::vector<SurfaceDescription>& surfaces);
 
-/// All `[[light]]`.
+/// What a `[material.NAME]` says about glints without a map, `ndf = "grid"`.
+void read_glints(TableReader& material, MaterialDescription& description);
+
+/// All `[[light]]`, with their keyframes.
 void read_lights(TableReader& job, SceneDescription& scene);
 
 /// `[camera]`, `[[shape]]`, `[[light]]`, `[background]` and the materials.

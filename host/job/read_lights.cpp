@@ -1,6 +1,7 @@
 #include <functional>
 
 #include "host/job/read_job.h"
+#include "host/job/read_keyframes.h"
 
 namespace mica {
 namespace {
@@ -40,12 +41,16 @@ void read_values(TableReader& light, DiskLight& disk) {
   light.read("intensity", disk.intensity, power);
 }
 
-LightDescription make_lamp(const LightDescription& kind, TableReader& light) {
+void read_lamp(const LightDescription& kind, TableReader& light, SceneDescription& scene) {
   LightDescription lamp = kind;
   const char* place = std::holds_alternative<DirectionalLight>(lamp) ? "direction" : "position";
   light.require(place, "an array of 3 numbers");
-  std::visit([&](auto& described) { read_values(light, described); }, lamp);
-  return lamp;
+  const auto read = [](TableReader& table, LightDescription& described) {
+    std::visit([&](auto& values) { read_values(table, values); }, described);
+  };
+  read(light, lamp);
+  scene.light_keys.push_back(read_keyframes(light, lamp, read));
+  scene.lights.push_back(lamp);
 }
 
 EnvironmentLight make_environment(TableReader& light) {
@@ -67,7 +72,7 @@ EnvironmentLight make_furnace(TableReader& light) {
 void read_light(TableReader& light, SceneDescription& scene) {
   using Make = std::function<void()>;
   const auto lamp = [&](const LightDescription& kind) {
-    return Make([&light, &scene, kind] { scene.lights.push_back(make_lamp(kind, light)); });
+    return Make([&light, &scene, kind] { read_lamp(kind, light, scene); });
   };
   const auto far = [&](EnvironmentLight (*make)(TableReader&)) {
     return Make([&light, &scene, make] { scene.environments.push_back(make(light)); });

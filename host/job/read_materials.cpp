@@ -53,8 +53,8 @@ CoatDescription read_coat(TableReader& table) {
 
 void read_evaluator(TableReader& material, std::string& ndf) {
   const std::vector<std::string_view> available = {"triangles", "gaussians", "beckmanns", "smooth",
-                                                   "cavities"};
-  const std::vector<std::string_view> planned = {"auto", "grid", "pyramid", "reference"};
+                                                   "cavities",  "pyramid",   "auto",      "grid"};
+  const std::vector<std::string_view> planned = {"reference"};
   std::string word = ndf;
   material.read("ndf", word);
   if (std::find(available.begin(), available.end(), word) != available.end()) {
@@ -71,7 +71,7 @@ void read_evaluator(TableReader& material, std::string& ndf) {
 /// Mixtures have no lobes for Catmull-Rom patches.
 void refuse_bicubic(TableReader& table, const MaterialDescription& material,
                     const std::vector<SurfaceDescription>& surfaces) {
-  if (material.ndf == "triangles") return;
+  if (material.ndf == "triangles" || material.ndf == "pyramid" || material.ndf == "auto") return;
   for (const SurfaceDescription& surface : surfaces)
     if (surface.name == material.surface && surface.interpolation == Interpolation::bicubic)
       table.report("ndf",
@@ -101,18 +101,22 @@ std::vector<MaterialDescription> read_materials(TableReader& job,
   job.read_named_tables("material", [&](TableReader& table) {
     MaterialDescription material;
     material.name = table.name();
-    table.require("surface", "the name of a surface");
-    table.read_reference("surface", material.surface, "surface", surface_names);
     table.read("repeat", material.repeat, open_low(0, 1e6));
     read_evaluator(table, material.ndf);
-    refuse_bicubic(table, material, surfaces);
-    if (material.ndf == "cavities") {
-      read_cavities(table, material);
+    if (material.ndf == "grid") {
+      read_glints(table, material);
     } else {
-      table.read("masking", material.masking, maskings);
-      table.read("elements", material.elements, closed(1, 4));
+      table.require("surface", "the name of a surface");
+      table.read_reference("surface", material.surface, "surface", surface_names);
+      table.read("roughness", material.roughness, closed(1e-4, 1));
+      refuse_bicubic(table, material, surfaces);
+      if (material.ndf == "cavities") {
+        read_cavities(table, material);
+      } else {
+        table.read("masking", material.masking, maskings);
+        table.read("elements", material.elements, closed(1, 4));
+      }
     }
-    table.read("roughness", material.roughness, closed(1e-4, 1));
     table.read_table("specular", [&](TableReader& specular) { material.specular = read_specular(specular); });
     table.read("diffuse", material.diffuse, reflectance);
     table.read_table("coat", [&](TableReader& coat) { material.coat = read_coat(coat); });

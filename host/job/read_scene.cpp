@@ -1,6 +1,7 @@
 #include <Eigen/Geometry>
 
 #include "host/job/read_job.h"
+#include "host/job/read_keyframes.h"
 
 namespace mica {
 namespace {
@@ -109,7 +110,10 @@ void read_background(TableReader& table, BackgroundDescription& background) {
 
 SceneDescription read_scene(TableReader& job, const std::vector<SurfaceDescription>& surfaces) {
   SceneDescription scene;
-  job.read_table("camera", [&](TableReader& table) { read_camera(table, scene.camera); });
+  job.read_table("camera", [&](TableReader& table) {
+    read_camera(table, scene.camera);
+    scene.camera_keys = read_keyframes(table, scene.camera, read_camera);
+  });
   scene.materials = read_materials(job, surfaces);
   std::vector<std::string_view> material_names;
   for (const MaterialDescription& material : scene.materials) material_names.push_back(material.name);

@@ -130,6 +130,7 @@ SurfaceDescription read_waves(TableReader& surface) {
   surface.read("wind_speed", waves.wind_speed, closed(1e-6, 100));
   surface.read("wind_direction", waves.wind_direction_degrees, directions);
   surface.read("time", waves.time_seconds, closed(-1e6, 1e6));
+  surface.read("time_scale", waves.time_scale, closed(0, 1e3));
   surface.read("seed", waves.seed);
   return {surface.name(), waves, Interpolation::bilinear};
 }

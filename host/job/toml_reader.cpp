@@ -134,20 +134,50 @@ void TableReader::read(std::string_view key, double& value, const Interval& rang
 
 void TableReader::read_numbers(std::string_view key, double* values, std::size_t count,
                                const Interval& range) {
-  const toml::node* node = find(key);
-  if (!node) return;
-  const toml::array* array = node->as_array();
+  if (const toml::node* node = find(key)) read_numbers(*node, path_of(key), values, count, range);
+}
+
+void TableReader::read_numbers(const toml::node& node, const std::string& path, double* values,
+                               std::size_t count, const Interval& range) {
+  const toml::array* array = node.as_array();
   if (!array || array->size() != count) {
-    const std::string found = array ? fmt::format("an array of {}", array->size()) : describe(*node);
-    report(key, fmt::format("found {}; expected an array of {} numbers {}", found, count, to_string(range)));
+    const std::string found = array ? fmt::format("an array of {}", array->size()) : describe(node);
+    report_at(node, path,
+              fmt::format("found {}; expected an array of {} numbers {}", found, count, to_string(range)));
     return;
   }
   std::vector<double> numbers(count);
   bool valid = true;
   for (std::size_t i = 0; i < count; ++i) {
-    valid &= read_number((*array)[i], fmt::format("{}.{}", path_of(key), i), numbers[i], range);
+    valid &= read_number((*array)[i], fmt::format("{}.{}", path, i), numbers[i], range);
   }
   if (valid) std::copy(numbers.begin(), numbers.end(), values);
+}
+
+void TableReader::read_one_or_two(std::string_view key, Eigen::Vector2d& value, const Interval& range) {
+  const toml::node* node = find(key);
+  if (!node) return;
+  double number = 0;
+  if (node->is_array()) {
+    read_numbers(*node, path_of(key), value.data(), 2, range);
+  } else if (read_number(*node, path_of(key), number, range)) {
+    value.setConstant(number);
+  }
+}
+
+void TableReader::read(std::string_view key, std::vector<Eigen::Vector3d>& values, std::size_t most,
+                       const Interval& range) {
+  const toml::node* node = find(key);
+  if (!node) return;
+  const toml::array* array = node->as_array();
+  if (!array || array->empty() || array->size() > most) {
+    const std::string found = array ? fmt::format("an array of {}", array->size()) : describe(*node);
+    return report(key,
+                  fmt::format("found {}; expected an array of 1 to {} arrays of 3 numbers", found, most));
+  }
+  values.assign(array->size(), Eigen::Vector3d::Zero());
+  for (std::size_t i = 0; i < array->size(); ++i)
+    read_numbers((*array)[i], fmt::format("{}.{}", path_of(key), i), values[i].data(), 3, range);
 }
 
 const std::string* TableReader::find_text(std::string_view key) {

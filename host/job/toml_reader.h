@@ -68,6 +68,11 @@ class TableReader {
   void read(std::string_view key, Eigen::Matrix<double, N, 1>& value, const Interval& range) {
     read_numbers(key, value.data(), N, range);
   }
+  /// A number, which stands for both, or an array of 2 numbers.
+  void read_one_or_two(std::string_view key, Eigen::Vector2d& value, const Interval& range);
+  /// An array of 1 to `most` arrays of 3 numbers.
+  void read(std::string_view key, std::vector<Eigen::Vector3d>& values, std::size_t most,
+            const Interval& range);
   template <typename T>
   void read(std::string_view key, T& value, const Choices<T>& choices);
   /// Any of `choices`, each at most once.
@@ -106,6 +111,8 @@ class TableReader {
   void report_unexpected(const toml::node& node, const std::string& path, std::string_view expected);
   bool read_number(const toml::node& node, const std::string& path, double& value, const Interval& range);
   void read_numbers(std::string_view key, double* values, std::size_t count, const Interval& range);
+  void read_numbers(const toml::node& node, const std::string& path, double* values, std::size_t count,
+                    const Interval& range);
   /// Index of the string `node` in `words`; when it is none of them, their number, and a report.
   std::size_t choose(const toml::node& node, const std::string& path,
                      const std::vector<std::string_view>& words);

@@ -44,9 +44,17 @@ struct Problem {
   Eigen::Vector2d angle;       ///< on the unit square
   Eigen::Vector2d sigma_angle;
   std::uint32_t seed;
+  double share, kept;
 };
 
-double level_sum(const Problem& problem, int level, double weight) {
+/// Whether a glint is there when a share of them is. The window of the soft step stays inside of (0, 1), so
+/// that its mean over r is the share.
+double presence(double r, double share) {
+  const double softness = std::min({0.1, share, 1 - share});
+  return softness > 1e-6 ? smoothstep(r - softness, r + softness, share) : (r < share ? 1 : 0);
+}
+
+void add_level(const Problem& problem, int level, double weight, std::vector<double>* densities) {
   const double cells = std::exp2(level);
   const Eigen::Vector2d position = problem.position / cells, angle = problem.angle * cells;
   const Eigen::Vector2d sigma_angle = problem.sigma_angle * cells;
@@ -55,7 +63,8 @@ double level_sum(const Problem& problem, int level, double weight) {
   const std::int64_t i0 = lowest_cell(position.x()), j0 = lowest_cell(position.y());
   const std::int64_t k0 = lowest_cell(angle.x()), l0 = lowest_cell(angle.y());
 
-  double sum = 0;
+  const auto colors = static_cast<double>(densities->size());
+  std::vector<double> sums(densities->size());
   for (std::int64_t i = i0; i < i0 + 2; ++i)
     for (std::int64_t j = j0; j < j0 + 2; ++j)
       for (std::int64_t k = k0; k < k0 + 2; ++k)
@@ -70,8 +79,10 @@ double level_sum(const Problem& problem, int level, double weight) {
           const double angular =
               std::exp(-0.5 * n.squaredNorm()) / (2 * kPi * sigma_angle.x() * sigma_angle.y());
           const double r = glint.roulette;
-          sum += smoothstep(std::max(0.0, r - 0.1), std::min(1.0, r + 0.1), weight) * spatial *
-                 angular;  // Eq. 8
+          sums[static_cast<std::size_t>(glint.color * colors)] +=
+              smoothstep(std::max(0.0, r - 0.1), std::min(1.0, r + 0.1), weight) * spatial *
+              angular *  // Eq. 8
+              presence(glint.presence, problem.share * problem.kept) / problem.kept;
         }
 
   const Eigen::Vector2d sigma = covariance.diagonal().cwiseSqrt();
@@ -83,7 +94,8 @@ double level_sum(const Problem& problem, int level, double weight) {
     square *= share(0, cells, angle[axis], sigma_angle[axis]);
     near *= share(std::max(low_angle, 0.0), std::min(low_angle + 2, cells), angle[axis], sigma_angle[axis]);
   }
-  return sum / inside + weight * (square - near);  // Eqs. 10, 11
+  for (std::size_t color = 0; color < sums.size(); ++color)  // Eqs. 10, 11
+    (*densities)[color] += sums[color] / inside + problem.share * weight * (square - near) / colors;
 }
 
 }  // namespace
@@ -95,9 +107,24 @@ Glint glint_of_cell(std::int64_t i, std::int64_t j, std::int64_t k, std::int64_t
   const std::uint32_t spatial = mix(row + (u32(i) & kCellMask) * 0xc2b2ae3du);
   const std::uint32_t angular = mix(u32(l) * 0x27d4eb2fu + u32(k) * 0x165667b1u);
   const std::uint32_t a = mix(spatial + angular), b = mix(a + 0x9e3779b9u), c = (a + b) * 0x2545f495u;
+  const std::uint32_t d = mix(b + 0x3c6ef372u);
   const auto unit = [](std::uint32_t bits) { return (bits + 0.5) / 65536; };
-  return {{unit(a & 0xffffu), unit(a >> 16)}, {unit(b & 0xffffu), unit(b >> 16)}, unit(c >> 16)};
+  return {{unit(a & 0xffffu), unit(a >> 16)},
+          {unit(b & 0xffffu), unit(b >> 16)},
+          unit(c >> 16),
+          unit(d >> 16),
+          unit(d & 0xffffu)};
 }
+
+GlintProcess::GlintProcess(const GlintPoint& point)
+    : beckmann(point.distribution == Distribution::beckmann),
+      alpha_x(point.alpha_x),
+      alpha_y(point.alpha_y),
+      density(point.density),
+      stretch(point.stretch),
+      seed(point.seed),
+      share(point.share),
+      kept(point.kept) {}
 
 double GlintProcess::smooth_density(const Eigen::Vector2d& half_vector) const {
   const double cos2 = 1 - half_vector.squaredNorm();
@@ -125,9 +152,10 @@ Eigen::Vector2d GlintProcess::from_disk(const Eigen::Vector2d& point) const {
   return slopes / std::sqrt(1 + slopes.squaredNorm());
 }
 
-double GlintProcess::density_of(const Query& query) const {
+std::vector<double> GlintProcess::densities_of(const Query& query, int colors) const {
+  std::vector<double> densities(static_cast<std::size_t>(colors));
   const double smooth = smooth_density(query.half_vector);
-  if (smooth == 0) return 0;
+  if (smooth == 0) return densities;
   const double resolution = std::sqrt(density), root = std::sqrt(stretch);
   const Eigen::DiagonalMatrix<double, 2> to_cells(resolution / root, resolution * root);
   Problem problem;
@@ -136,7 +164,7 @@ double GlintProcess::density_of(const Query& query) const {
   problem.angle = to_disk(query.half_vector);
   const double jacobian = std::sqrt(kPi / 4 * smooth);  // of lengths, Eq. 3
   problem.sigma_angle = query.roughness * jacobian * Eigen::Vector2d(1 / root, root);
-  problem.seed = seed;
+  problem.seed = seed, problem.share = share, problem.kept = kept;
 
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(problem.covariance);
   const double sigma = std::sqrt(std::max(solver.eigenvalues()[1], 1e-100));
@@ -144,7 +172,10 @@ double GlintProcess::density_of(const Query& query) const {
   const int level = static_cast<int>(detail);
   problem.covariance += std::pow(std::exp2(level) / 128, 2) * Eigen::Matrix2d::Identity();
   const double weight = 1 - (detail - level);
-  return smooth * (level_sum(problem, level, weight) + level_sum(problem, level + 1, 1 - weight));
+  add_level(problem, level, weight, &densities);
+  add_level(problem, level + 1, 1 - weight, &densities);
+  for (double& value : densities) value *= smooth;
+  return densities;
 }
 
 }  // namespace mica::reference

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "host/base/glints.h"
 #include "host/base/query.h"
 
 namespace mica::reference {
@@ -10,7 +11,9 @@ namespace mica::reference {
 /// What is random about the glint of a cell; kernels/glint_hash.h, written again.
 struct Glint {
   Eigen::Vector2d place, angle;  ///< in the cell, (0, 1)^2: on the surface, on the disk
-  double roulette;               ///< (0, 1)
+  double roulette;               ///< (0, 1): of its level
+  double presence;               ///< (0, 1): of its process
+  double color;                  ///< (0, 1), whose part of the colours says which
 };
 /// Of the spatial cell (i, j) and the angular cell (k, l) of a level.
 Glint glint_of_cell(std::int64_t i, std::int64_t j, std::int64_t k, std::int64_t l, int level,
@@ -18,14 +21,21 @@ Glint glint_of_cell(std::int64_t i, std::int64_t j, std::int64_t k, std::int64_t
 
 /// A glint surface as [Kem25] Algorithm 1 defines it, in double precision and without regard to speed.
 struct GlintProcess {
+  GlintProcess() = default;
+  explicit GlintProcess(const GlintPoint& point);
+
   bool beckmann = false;                ///< else Trowbridge-Reitz
   double alpha_x = 0.3, alpha_y = 0.3;  ///< roughness
   double density = 1e6;                 ///< cells per unit area of uv
   double stretch = 1;                   ///< of each glint along u
   std::uint32_t seed = 1;
+  double share = 1;  ///< of the light
+  double kept = 1;   ///< of the glints
 
   /// Density of normals over the disk at the query's half vector.
-  double density_of(const Query& query) const;
+  double density_of(const Query& query) const { return densities_of(query, 1).front(); }
+  /// What the glints of each of `colors` colours add to it.
+  std::vector<double> densities_of(const Query& query, int colors) const;
 
   /// D of the smooth distribution, per area of the disk (s, t).
   double smooth_density(const Eigen::Vector2d& half_vector) const;

@@ -66,6 +66,7 @@ std::string render_json(const Job& job, const DeviceInfo& device, const RenderRe
   ordered_json json;
   json["mica"] = version();
   json["job"] = to_json(job);
+  json["frame"] = result.frame;
   json["device"] = to_json(device);
   json["plan"] = to_json(result.plan);
   json["device_bytes"] = result.device_bytes;
@@ -83,6 +84,18 @@ std::string render_json(const Job& job, const DeviceInfo& device, const RenderRe
   json["notes"] = result.surface_notes;
   json["warnings"] = result.surface_warnings;
   return json.dump(2) + "\n";
+}
+
+std::string failure_json(int frame, const std::string& error) {
+  // Paths need not be UTF-8; JSON has to be.
+  const ordered_json json = {{"frame", frame}, {"error", error}};
+  return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+std::string frames_json(const std::vector<std::string>& frames) {
+  ordered_json all = ordered_json::array();
+  for (const std::string& frame : frames) all.push_back(ordered_json::parse(frame));
+  return ordered_json{{"frames", all}}.dump(2) + "\n";
 }
 
 std::string render_summary(const DeviceInfo& device, const RenderResult& result) {

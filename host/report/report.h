@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "host/device/device.h"
 #include "host/engine/estimate.h"
@@ -15,6 +16,12 @@ std::string plan_json(const Job& job, const Plan& plan, const std::optional<Esti
 
 /// What was done to render a job: plan, bytes, seconds by phase, queries/s, audit; JSON text.
 std::string render_json(const Job& job, const DeviceInfo& device, const RenderResult& result);
+
+/// Of a frame that failed, in the place of what was done.
+std::string failure_json(int frame, const std::string& error);
+
+/// The texts of all frames, in order, as one.
+std::string frames_json(const std::vector<std::string>& frames);
 
 /// The same for people, a few lines.
 std::string render_summary(const DeviceInfo& device, const RenderResult& result);

@@ -8,6 +8,7 @@
 
 #include "host/base/cavities.h"
 #include "host/base/masking.h"
+#include "host/scene/glints_description.h"
 
 namespace mica {
 
@@ -54,6 +55,7 @@ struct MaterialDescription {
   Fresnel specular = ColorFresnel{};
   Color diffuse{0, 0, 0};  ///< Lambertian albedo
   std::optional<CoatDescription> coat = {};
+  std::optional<GlintsDescription> glints = {};  ///< of the evaluator "grid", which needs no surface
 };
 
 struct PlaneShape {  ///< square of the plane z = height, uv over its sides
@@ -142,6 +144,16 @@ struct BackgroundDescription {
   bool is_environment = false;  ///< the scene's environment lights instead
 };
 
+/// What a camera or a light is at one frame.
+template <class Described>
+struct Keyframe {
+  double frame;
+  Described value;
+};
+/// By increasing frame; empty for what does not move.
+template <class Described>
+using Keyframes = std::vector<Keyframe<Described>>;
+
 struct SceneDescription {
   CameraDescription camera;
   std::vector<MaterialDescription> materials;
@@ -149,6 +161,8 @@ struct SceneDescription {
   std::vector<LightDescription> lights;
   std::vector<EnvironmentLight> environments;
   BackgroundDescription background;
+  Keyframes<CameraDescription> camera_keys = {};
+  std::vector<Keyframes<LightDescription>> light_keys = {};  ///< by light; lights beyond its end stand still
 };
 
 }  // namespace mica

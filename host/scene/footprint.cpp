@@ -7,7 +7,7 @@
 
 namespace mica {
 
-Eigen::Matrix2d uv_differentials(const CameraRay& ray, const Hit& hit) {
+Eigen::Matrix<double, 3, 2> position_differentials(const CameraRay& ray, const Hit& hit) {
   // Bounds what follows; such a footprint is shortened later.
   const double least = 1e-9 * ray.direction.norm();
   double cosine = hit.face_normal.dot(ray.direction);
@@ -16,12 +16,15 @@ Eigen::Matrix2d uv_differentials(const CameraRay& ray, const Hit& hit) {
   Eigen::Matrix<double, 3, 2> dp;  // [Igehy99] Eq. 10 to 12 for a fixed origin
   dp.col(0) = hit.t * (ray.ddx - hit.face_normal.dot(ray.ddx) / cosine * ray.direction);
   dp.col(1) = hit.t * (ray.ddy - hit.face_normal.dot(ray.ddy) / cosine * ray.direction);
+  return dp;
+}
 
+Eigen::Matrix2d uv_differentials(const CameraRay& ray, const Hit& hit) {
   Eigen::Matrix<double, 3, 2> dpduv;
   dpduv << hit.dpdu, hit.dpdv;
   const Eigen::Matrix2d metric = dpduv.transpose() * dpduv;
   if (metric.determinant() <= 1e-24 * metric.trace() * metric.trace()) return Eigen::Matrix2d::Zero();
-  return metric.inverse() * (dpduv.transpose() * dp);
+  return metric.inverse() * (dpduv.transpose() * position_differentials(ray, hit));
 }
 
 Eigen::Matrix2d footprint_covariance(const Eigen::Matrix2d& duv, double sigma_pixels) {

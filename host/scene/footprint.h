@@ -7,9 +7,12 @@
 
 namespace mica {
 
-/// Change of the shape's uv per pixel to the right (first column) and down (second column), on the tangent
+/// Change of the position per pixel to the right (first column) and down (second column), on the tangent
 /// plane of the hit: ray differentials [Igehy99], Homan Igehy, "Tracing Ray Differentials", SIGGRAPH 1999,
 /// sec. 3.1.
+Eigen::Matrix<double, 3, 2> position_differentials(const CameraRay& ray, const Hit& hit);
+
+/// The same of the shape's uv.
 Eigen::Matrix2d uv_differentials(const CameraRay& ray, const Hit& hit);
 
 /// Covariance in uv^2 of a Gaussian pixel filter with standard deviation `sigma_pixels` pushed through `duv`.

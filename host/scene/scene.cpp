@@ -16,6 +16,7 @@
 #include "host/scene/coat_crossing.h"
 #include "host/scene/footprint.h"
 #include "host/scene/geometry.h"
+#include "host/scene/glint_material.h"
 #include "host/scene/lobes.h"
 #include "host/scene/shading.h"
 
@@ -175,6 +176,7 @@ struct StaticScene {
   std::vector<MaterialDescription> materials;
   std::vector<std::optional<CoatInterface>> coats;  ///< of each material
   PartMaterials part_materials;
+  std::vector<std::optional<GlintMaterial>> glints;  ///< of each material that a shape has
 
   Color far_radiance(const Eigen::Vector3d& direction) const {
     return shows_environment ? environment.radiance(direction) : background.radiance(direction);
@@ -188,10 +190,16 @@ StaticScene make_static_scene(const SceneDescription& description) {
                    description.background.is_environment,
                    description.materials,
                    {},
+                   {},
                    {}};
   for (const MaterialDescription& material : description.materials)
     made.coats.push_back(material.coat ? std::optional<CoatInterface>(*material.coat) : std::nullopt);
   made.part_materials = materials_of_parts(description, made.geometry);
+  made.glints.resize(description.materials.size());
+  for (const auto& parts : made.part_materials)
+    for (const std::uint32_t n : parts)
+      if (description.materials[n].glints && !made.glints[n])
+        made.glints[n].emplace(description.materials[n]);
   return made;
 }
 
@@ -236,6 +244,7 @@ Scene::Scene(std::unique_ptr<Implementation> implementation) : implementation_(s
 
 Scene::~Scene() = default;
 Scene::Scene(Scene&&) noexcept = default;
+Scene& Scene::operator=(Scene&&) noexcept = default;
 
 const Geometry& Scene::geometry() const {
   return implementation_->shared->geometry;
@@ -303,8 +312,11 @@ Color Scene::Implementation::shade(const CameraRay& ray, const Hit& hit, const S
   means->add(query.query.footprint, frame.z);
   Color smooth = Color::Zero();  // what needs no P-NDF
   if (frame.face_normal.dot(to_eye) < min_cosine) return smooth;
+  const std::optional<GlintMaterial>& glints = shared->glints[material_index];
+  std::vector<GlintPlace> places = {{query.query.footprint, frame.x, frame.y, material.roughness, {}}};
+  if (glints) places = glints->places(ray, hit, frame, filter_sigma_subpixels / subpixels);
 
-  const LitPoint point{hit,           frame, to_eye, query.query.footprint, subpixel.pixel, subpixel.index,
+  const LitPoint point{hit,           frame, to_eye, places.front().footprint, subpixel.pixel, subpixel.index,
                        material_index};
   if (gathering.points) queries->points.push_back(point);
 
@@ -319,15 +331,23 @@ Color Scene::Implementation::shade(const CameraRay& ray, const Hit& hit, const S
 
     const LobesSeen seen = see_lobes(material, coat, alpha, frame.z, to_eye, incident);
     smooth += seen.smooth.cwiseProduct(incident.irradiance);
-    query.query.half_vector = frame.on_disk(seen.half_vector);
-    query.query.roughness = seen.roughness;
     if (gathering.patch_materials[material_index]) {
+      query.query.half_vector = frame.on_disk(seen.half_vector);
+      query.query.roughness = seen.roughness;
       queries->lit.push_back(lit_brdf(query, point, incident));
       continue;
     }
-    query.weight =
-        seen.glint_weight.cwiseProduct(incident.irradiance / (subpixels * subpixels)).cast<float>();
-    if (query.weight.maxCoeff() > 0) queries->glints.push_back(query);
+    const Color weight = glints ? glints->weight(hit, places.front(), frame, to_eye, seen, incident.direction)
+                                : seen.glint_weight;
+    query.weight = weight.cwiseProduct(incident.irradiance / (subpixels * subpixels)).cast<float>();
+    if (!(query.weight.maxCoeff() > 0)) continue;
+    for (const GlintPlace& place : places) {
+      query.query.footprint = place.footprint;
+      query.query.half_vector = {seen.half_vector.dot(place.x), seen.half_vector.dot(place.y)};
+      query.query.roughness = glints ? glints->microroughness(place, seen) : seen.roughness;
+      query.glints = place.point;
+      queries->glints.push_back(query);
+    }
   }
   return smooth;
 }

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "host/base/glints.h"
 #include "host/base/query.h"
 #include "host/scene/coat.h"
 #include "host/scene/description.h"
@@ -20,6 +21,7 @@ struct GlintQuery {
   std::uint32_t pixel = 0;     ///< row * width + column, from the first traced row
   std::uint32_t material = 0;  ///< index into SceneDescription::materials
   Eigen::Vector3f weight = Eigen::Vector3f::Zero();  ///< radiance into the pixel per unit of D
+  GlintPoint glints;                                 ///< of the evaluator "grid"; others do not mind it
 };
 
 /// What tracing a block of image rows found. Rows count from the top of the image.
@@ -60,6 +62,7 @@ class Scene {
         std::vector<double> masking_alpha = {}, LightGathering gathering = {});
   ~Scene();
   Scene(Scene&&) noexcept;
+  Scene& operator=(Scene&&) noexcept;
 
   /// The same shapes and background from another camera under other lights; they are shared, not built again.
   Scene with_view(const CameraDescription& camera, const std::vector<LightDescription>& lights,

@@ -95,7 +95,8 @@ struct WavesSurface {
   double patch_meters = 250;          ///< side of one map period, above 0..1e6
   double wind_speed = 8;              ///< metres a second, 19.5 m above the sea; above 0..100
   double wind_direction_degrees = 0;  ///< that the waves run in, from +u towards +v; -360..360
-  double time_seconds = 0;            ///< -1e6..1e6
+  double time_seconds = 0;            ///< at frame 0; -1e6..1e6
+  double time_scale = 1;              ///< seconds of the sea by second of the frames; 0..1e3
   std::uint64_t seed = 1;
 };
 

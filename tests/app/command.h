@@ -105,8 +105,8 @@ class CommandTest : public FolderTest {
     return names;
   }
 
-  /// The values of a .npy file of shape (n,), checked against the format's own rules.
-  std::vector<float> densities(const std::string& file) const {
+  /// The values of a .npy file of shape (n,), or (n, columns), checked against the format's own rules.
+  std::vector<float> densities(const std::string& file, std::size_t columns = 0) const {
     const std::string content = bytes(path(file));
     if (content.size() < 10 || content.compare(0, 8, std::string("\x93NUMPY\x01\x00", 8)) != 0) {
       ADD_FAILURE() << file << " is no .npy file of version 1.0";
@@ -118,8 +118,10 @@ class CommandTest : public FolderTest {
     std::vector<float> values((content.size() - 10 - header) / sizeof(float));
     if (!values.empty())  // memcpy takes no null pointer, not even for no bytes
       std::memcpy(values.data(), content.data() + 10 + header, values.size() * sizeof(float));
-    const std::string shape =
-        "'descr': '<f4', 'fortran_order': False, 'shape': (" + std::to_string(values.size()) + ",)";
+    const std::string sizes = columns
+                                  ? std::to_string(values.size() / columns) + ", " + std::to_string(columns)
+                                  : std::to_string(values.size()) + ",";
+    const std::string shape = "'descr': '<f4', 'fortran_order': False, 'shape': (" + sizes + ")";
     EXPECT_NE(content.substr(10, header).find(shape), std::string::npos) << content.substr(10, header);
     return values;
   }

@@ -101,7 +101,7 @@ TEST_F(Commands, MapMakesEveryKind) {
   make("bumps --resolution 64 --cell 16 --size 1 --aspect 2 --slope 0.5 --jitter 0.3 --seed 7",
        {"", BumpsSurface{64, 16, 1, 2, 0.5, 0.3, 7}, bilinear});
   make("waves --resolution 64 --patch 100 --wind-speed 5 --wind-direction 40 --time 2.5 --seed 7",
-       {"", WavesSurface{64, 100, 5, 40, 2.5, 7}, bilinear});
+       {"", WavesSurface{64, 100, 5, 40, 2.5, 1, 7}, bilinear});
 }
 
 TEST_F(Commands, MapAddsLayers) {
@@ -143,8 +143,8 @@ TEST_F(Commands, SelftestPassesHere) {
 }
 
 TEST_F(Commands, HelpIsData) {
-  for (const char* const command :
-       {"", "eval", "ndf", "map", "map spectrum", "map flakes", "map layers", "devices", "selftest", "bench"}) {
+  for (const char* const command : {"", "eval", "ndf", "map", "map spectrum", "map flakes", "map layers",
+                                    "devices", "selftest", "bench"}) {
     const Outcome outcome = mica(std::string(command) + " --help");
     EXPECT_EQ(outcome.code, 0) << command;
     EXPECT_NE(outcome.out.find("Usage"), std::string::npos) << command;

@@ -137,7 +137,9 @@ TEST_F(Eval, GlintsNeedNoMap) {
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const std::vector<float> densities = this->densities("D.npy");
   ASSERT_EQ(densities.size(), 50u);
-  const reference::GlintProcess process{true, 0.3, 0.2, 1e5, 2, 5};
+  reference::GlintProcess process;
+  process.beckmann = true, process.alpha_x = 0.3, process.alpha_y = 0.2;
+  process.density = 1e5, process.stretch = 2, process.seed = 5;
   const Rows rows = query_rows(50);
   for (std::size_t n = 0; n < rows.size(); ++n) {
     Query query;

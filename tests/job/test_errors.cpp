@@ -33,20 +33,22 @@ const char* const surface_keys = "resolution, rms_slope, correlation, seed";
 const std::vector<Mistake> unknown_keys = {
     {"", "[image]\n  @widht = 3",
      "image.widht: found an unknown key; expected one of: width, height, subpixels, samples, max_bounces, "
-     "aovs, exposure "
+     "aovs, exposure, tone_map "
      "(did you mean \"width\"?)"},
     {"", "[audit]\n@turbo = 1", "audit.turbo: found an unknown key; expected \"samples\""},
     {"", "[@lights]",
-     "lights: found an unknown key; expected one of: seed, image, surface, camera, material, shape, light, "
-     "background, audit (did you mean \"light\"?)"},
+     "lights: found an unknown key; expected one of: seed, image, frames, surface, camera, material, shape, "
+     "light, "
+     "background, accuracy, audit (did you mean \"light\"?)"},
     {"\"spectrum\"", "\"spectrum\"\n@flake_size = 3",
      std::string("surface.bumps.flake_size: found an unknown key; expected one of: generate, ") +
          surface_keys + ", interpolation"},
     {"\"bumps\"", "\"bumps\"\nspecular = { ior = 1.5, @kk = 1 }",
      "material.gold.specular.kk: found an unknown key; expected \"ior\""},
     {"\"bumps\"", "\"bumps\"\n@\"a b\" = 1",
-     "material.gold.\"a b\": found an unknown key; expected one of: surface, repeat, ndf, masking, "
-     "elements, roughness, "
+     "material.gold.\"a b\": found an unknown key; expected one of: repeat, ndf, surface, roughness, "
+     "masking, "
+     "elements, "
      "specular, "
      "diffuse, coat"},
 };
@@ -196,13 +198,13 @@ const std::vector<Mistake> wrong_words = {
      "\"bumps\"?)"},
     {"material = \"gold\"", "material = @\"silver\"",
      "shape.0.material: found \"silver\"; expected the name of a material, \"gold\""},
-    {"\"bumps\"", "\"bumps\"\nndf = @\"pyramid\"",
-     "material.gold.ndf: found \"pyramid\", which is not available in this version; expected an evaluator "
+    {"\"bumps\"", "\"bumps\"\nndf = @\"reference\"",
+     "material.gold.ndf: found \"reference\", which is not available in this version; expected an evaluator "
      "that "
-     "is available: triangles, gaussians, beckmanns, smooth, cavities"},
+     "is available: triangles, gaussians, beckmanns, smooth, cavities, pyramid, auto, grid"},
     {"\"bumps\"", "\"bumps\"\nndf = @\"triangle\"",
      "material.gold.ndf: found \"triangle\"; expected an evaluator that is available: triangles, gaussians, "
-     "beckmanns, smooth, cavities (did you mean \"triangles\"?)"},
+     "beckmanns, smooth, cavities, pyramid, auto, grid (did you mean \"triangles\"?)"},
     {"", "[image]\naovs = [\"uv\", @\"depth\"]",
      "image.aovs.1: found \"depth\" (a string); expected one of: ndf, uv, footprint, normal, queries"},
     {"", "[image]\naovs = [\"uv\", @\"uv\"]", "image.aovs.1: found \"uv\" again; expected each at most once"},

@@ -84,8 +84,9 @@ const std::vector<WrongOverride> wrong_overrides = {
     {"image.width=0", "image.width: found 0; expected an integer in [1, 16384]"},
     {"image.width=1280x720", "image.width: found \"1280x720\" (a string); expected an integer in [1, 16384]"},
     {"imaeg.width=1",
-     "imaeg: found an unknown key; expected one of: seed, image, surface, camera, material, shape, light, "
-     "background, audit (did you mean \"image\"?)"},
+     "imaeg: found an unknown key; expected one of: seed, image, frames, surface, camera, material, shape, "
+     "light, "
+     "background, accuracy, audit (did you mean \"image\"?)"},
     {"light.1.position=[0,0,1]",
      "found \"1\" as an index into an array of 1; expected an integer from 0 below 1"},
     {"light.-1.position=[0,0,1]",

@@ -110,6 +110,18 @@ TEST(Waves, ModesTurnByTheDispersionRelation) {
             1e-12);
 }
 
+// What a coarse map lacks is short waves: of slopes with the variance of the spectrum's tail, alpha / (2 k)
+// dk, in which alpha = 8.1e-3 [Pierson, Moskowitz 1964].
+TEST(Waves, AreTheSameOnACoarserGridButForTheShortest) {
+  const WavesSurface coarse = waves(64, 100), fine = waves(256, 100);
+  const Slopes few = slopes_of(normals(coarse)), many = slopes_of(normals(fine));
+  for (const auto& [m, n] : {std::pair(5, 2), std::pair(9, -1), std::pair(3, 14), std::pair(20, 10)}) {
+    const std::complex<double> mode = height_mode(many, fine, m, n);
+    EXPECT_LT(std::abs(height_mode(few, coarse, m, n) - mode), 1e-9 * std::abs(mode)) << m << ", " << n;
+  }
+  EXPECT_NEAR((mean_square(many) - mean_square(few)) / (8.1e-3 / 2 * std::log(4.0)), 1, 0.02);
+}
+
 TEST(Waves, KeepTheirEnergyAndReturnToTheirStart) {
   const double start = mean_square(slopes_of(normals(waves())));
   for (const double seconds : {-20.0, 0.1, 1000.0})

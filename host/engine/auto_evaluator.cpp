@@ -1,0 +1,236 @@
+#include "host/engine/auto_evaluator.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "host/base/error.h"
+#include "host/engine/collected_densities.h"
+#include "host/engine/map_query.h"
+#include "host/engine/mixture_evaluator.h"
+#include "host/engine/pyramid_evaluator.h"
+#include "host/engine/triangle_evaluator.h"
+#include "host/surface/random.h"
+
+namespace mica {
+namespace {
+
+constexpr double kFirstRoughness = 0.02;
+
+enum class Method { pyramid, gaussians, triangles };
+
+/// Nanoseconds of one core, of a query and of one thing that its kernel counts. Measured on one machine: only
+/// their ratios matter.
+struct CostModel {
+  double query, count;
+};
+CostModel cost_model(Method method, int elements) {
+  if (method == Method::triangles) return {700, 0.044};
+  if (method == Method::gaussians) return {700, elements == 1 ? 2.6 : elements == 2 ? 1.5 : 1.3};
+  return {500, 2.6};
+}
+
+/// Upper bound, at 95% confidence, of the relative L2 whose squares were sampled: the bootstrap's.
+double bootstrap_bound(const std::vector<double>& squares, const std::vector<double>& references) {
+  constexpr int resamples = 400;
+  const std::size_t count = squares.size();
+  std::vector<double> errors(resamples);
+  for (int k = 0; k < resamples; ++k) {
+    double square = 0, reference = 0;
+    for (std::size_t n = 0; n < count; ++n) {
+      const auto pick =
+          static_cast<std::size_t>(synthesis::random_unit(5, k, n) * static_cast<double>(count));
+      square += squares[pick];
+      reference += references[pick];
+    }
+    errors[k] = reference > 0 ? std::sqrt(square / reference) : 0;
+  }
+  std::sort(errors.begin(), errors.end());
+  return errors[static_cast<std::size_t>(0.95 * resamples)];
+}
+
+}  // namespace
+
+struct AutoEvaluator::Candidate {
+  Method method;
+  int elements;
+  PyramidPrecision precision;
+  std::string label;
+  std::unique_ptr<Evaluator> built = {};
+
+  std::unique_ptr<Evaluator> make(Device& device, const Surface& surface, bool count) const {
+    if (method == Method::triangles) {
+      TriangleSettings settings;
+      settings.count_flops = count;
+      return std::make_unique<TriangleEvaluator>(device, surface, settings);
+    }
+    if (method == Method::gaussians) {
+      MixtureSettings settings;
+      settings.elements = elements;
+      settings.count_elements = count;
+      return std::make_unique<GaussianEvaluator>(device, surface, settings);
+    }
+    PyramidSettings settings;
+    settings.precision = precision;
+    settings.count_elements = count;
+    return std::make_unique<PyramidEvaluator>(device, surface, settings);
+  }
+};
+
+AutoEvaluator::AutoEvaluator(Device& device, const Surface& surface, double tolerance)
+    : device_(device), surface_(surface), tolerance_(tolerance) {
+  if (!(tolerance >= kLeastTolerance))
+    throw UsageError(
+        fmt::format("tolerance {}: auto keeps {} or more; for less use triangles (1e-4) or reference",
+                    tolerance, kLeastTolerance));
+  // Of each method from the cheapest to the most precise.
+  for (const PyramidPrecision& precision :
+       {PyramidPrecision{std::sqrt(2.0), 2, 5e-2}, PyramidPrecision{std::sqrt(2.0), 1.5, 3e-2},
+        PyramidPrecision{std::sqrt(0.5), 1.5, 1e-2}, PyramidPrecision{std::sqrt(0.5), 1, 1e-3},
+        PyramidPrecision{std::sqrt(0.125), 0.75, 1e-4}})
+    candidates_.push_back({Method::pyramid, 0, precision,
+                           fmt::format("pyramid, blocks of {:.2g} footprints, cells of {:.2g} roughnesses",
+                                       precision.block_ratio, precision.cell_ratio)});
+  if (surface.interpolation() != Interpolation::bicubic)
+    for (const int elements : {1, 2, 4})
+      candidates_.push_back(
+          {Method::gaussians, elements, {}, fmt::format("gaussians, {} a texel and axis", elements)});
+  candidates_.push_back({Method::triangles, 0, {}, "triangles"});
+}
+AutoEvaluator::~AutoEvaluator() = default;
+
+QueryClass class_of(const Query& query, int map_width, int map_height) {
+  constexpr double slack = 1e-9;
+  const FootprintAxes axes = footprint_axes(without_needless_periods(query.footprint), map_width, map_height);
+  return {static_cast<int>(std::floor(0.5 + std::log2(axes.sigma_minor_texels) + slack)),
+          static_cast<int>(std::floor(2 * std::log2(query.roughness / kFirstRoughness) + slack))};
+}
+
+std::vector<Query> calibration_sample(std::size_t count, std::size_t each, int map_width, int map_height,
+                                      const std::function<Query(std::size_t)>& query) {
+  std::map<QueryClass, std::vector<std::pair<double, std::size_t>>> kept;  // heaps, largest key first
+  for (std::size_t n = 0; n < count; ++n) {
+    auto& heap = kept[class_of(query(n), map_width, map_height)];
+    const std::pair<double, std::size_t> entry(synthesis::random_unit(9, 0, n), n);
+    if (heap.size() == each) {
+      if (!(entry < heap.front())) continue;
+      std::pop_heap(heap.begin(), heap.end());
+      heap.pop_back();
+    }
+    heap.push_back(entry);
+    std::push_heap(heap.begin(), heap.end());
+  }
+  std::vector<Query> sample;
+  for (auto& [kind, heap] : kept) {
+    std::sort(heap.begin(), heap.end());
+    for (const auto& entry : heap) sample.push_back(query(entry.second));
+  }
+  return sample;
+}
+
+void AutoEvaluator::calibrate(const std::vector<Query>& sample) {
+  std::map<QueryClass, std::vector<Query>> by_class;
+  for (const Query& query : sample)
+    by_class[class_of(query, surface_.width(), surface_.height())].push_back(query);
+  for (const auto& [kind, queries] : by_class) choices_.push_back(choose(kind, queries));
+  // What nothing uses is not kept.
+  for (std::size_t n = 0; n < candidates_.size(); ++n) {
+    const bool used = std::any_of(candidate_of_.begin(), candidate_of_.end(),
+                                  [n](const auto& entry) { return entry.second == n; });
+    if (!used) candidates_[n].built.reset();
+  }
+}
+
+AutoChoice AutoEvaluator::choose(const QueryClass& kind, const std::vector<Query>& sample) {
+  constexpr std::size_t fewest_samples = 16;  // that a bound can be told from
+  const std::size_t triangles = candidates_.size() - 1;
+  const std::vector<float> expected = evaluator(&candidates_[triangles])->evaluate(sample);
+  AutoChoice best{kind, candidates_[triangles].label,        sample.size(), 0,
+                  1e-4, cost(candidates_[triangles], sample)};
+  candidate_of_[kind] = triangles;
+  if (sample.size() < fewest_samples) return best;
+  for (const Method method : {Method::pyramid, Method::gaussians}) {
+    for (std::size_t n = 0; n < triangles; ++n) {
+      Candidate& candidate = candidates_[n];
+      if (candidate.method != method) continue;
+      AutoChoice choice{kind, candidate.label, sample.size()};
+      if (!keeps_tolerance(&candidate, sample, expected, &choice)) continue;
+      choice.cost = cost(candidate, sample);
+      if (choice.cost < best.cost) best = choice, candidate_of_[kind] = n;
+      break;  // the next ones of this method cost more
+    }
+  }
+  return best;
+}
+
+bool AutoEvaluator::keeps_tolerance(Candidate* candidate, const std::vector<Query>& sample,
+                                    const std::vector<float>& expected, AutoChoice* choice) {
+  Evaluator* const built = evaluator(candidate);
+  if (auto* pyramid = dynamic_cast<PyramidEvaluator*>(built);
+      pyramid != nullptr && !pyramid->choose(sample.front()))
+    return false;  // it would only pass them on to the texels
+  const std::vector<float> densities = built->evaluate(sample);
+  std::vector<double> squares(sample.size()), references(sample.size());
+  for (std::size_t n = 0; n < sample.size(); ++n) {
+    const double reference = expected[n];
+    squares[n] = (densities[n] - reference) * (densities[n] - reference);
+    references[n] = reference * reference;
+  }
+  const double reference = std::accumulate(references.begin(), references.end(), 0.0);
+  if (!(reference > 0)) return false;
+  choice->relative_l2 = std::sqrt(std::accumulate(squares.begin(), squares.end(), 0.0) / reference);
+  choice->upper_bound = bootstrap_bound(squares, references) + 1e-4;  // and what triangles are off by
+  return choice->upper_bound <= tolerance_;
+}
+
+double AutoEvaluator::cost(const Candidate& candidate, const std::vector<Query>& sample) {
+  const std::vector<float> counts = candidate.make(device_, surface_, true)->evaluate(sample);
+  const CostModel model = cost_model(candidate.method, candidate.elements);
+  return model.query + model.count * std::accumulate(counts.begin(), counts.end(), 0.0) /
+                           static_cast<double>(counts.size());
+}
+
+Evaluator* AutoEvaluator::evaluator(Candidate* candidate) {
+  if (!candidate->built) candidate->built = candidate->make(device_, surface_, false);
+  return candidate->built.get();
+}
+
+std::unique_ptr<PendingDensities> AutoEvaluator::start(const std::vector<Query>& queries) {
+  std::map<std::size_t, std::vector<std::size_t>> places_of;  // by candidate
+  for (std::size_t n = 0; n < queries.size(); ++n) {
+    const auto found = candidate_of_.find(class_of(queries[n], surface_.width(), surface_.height()));
+    places_of[found == candidate_of_.end() ? candidates_.size() - 1 : found->second].push_back(n);
+  }
+  auto all = std::make_unique<CollectedDensities>(queries.size());
+  for (auto& [candidate, places] : places_of) {
+    std::vector<Query> some(places.size());
+    for (std::size_t n = 0; n < places.size(); ++n) some[n] = queries[places[n]];
+    all->add(evaluator(&candidates_[candidate])->start(some), std::move(places));
+  }
+  return all;
+}
+
+std::size_t AutoEvaluator::device_bytes() const {
+  std::size_t bytes = 0;
+  for (const Candidate& candidate : candidates_)
+    if (candidate.built) bytes += candidate.built->device_bytes();
+  return bytes;
+}
+
+double AutoEvaluator::build_seconds() const {
+  double seconds = 0;
+  for (const Candidate& candidate : candidates_)
+    if (candidate.built) seconds += candidate.built->build_seconds();
+  return seconds;
+}
+
+double AutoEvaluator::device_seconds() const {
+  double seconds = 0;
+  for (const Candidate& candidate : candidates_)
+    if (candidate.built) seconds += candidate.built->device_seconds();
+  return seconds;
+}
+
+}  // namespace mica

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "host/device/device.h"
+#include "host/engine/evaluator.h"
+#include "host/surface/surface.h"
+
+namespace mica {
+
+/// Queries that are alike: footprints of one octave, roughnesses of half an octave.
+struct QueryClass {
+  int size = 0;       ///< floor of log2 of sqrt(2) times the smaller standard deviation in texels
+  int roughness = 0;  ///< of 2 log2 (roughness / 0.02)
+
+  friend bool operator<(const QueryClass& a, const QueryClass& b) {
+    return a.size != b.size ? a.size < b.size : a.roughness < b.roughness;
+  }
+};
+
+/// What `auto` chose for a class, and why.
+struct AutoChoice {
+  QueryClass kind;
+  std::string evaluator;    ///< in words: "gaussians, 2 a texel and axis"
+  std::size_t samples = 0;  ///< queries that it was judged by
+  double relative_l2 = 0;   ///< of these
+  double upper_bound = 0;   ///< of the relative L2 of all queries of the class, at 95% confidence
+  double cost = 0;          ///< ns of one core that a query is estimated to take
+};
+
+/// `auto`: for each class of a job's queries the cheapest evaluator that keeps a tolerance on a sample of
+/// them. Candidates are pyramids of several precisions, mixtures, and `triangles`, which keeps 1e-4 and is
+/// what they are compared with. What is cheapest is told by counting elements, not by a clock: the same
+/// queries get the same answers.
+class AutoEvaluator : public Evaluator {
+ public:
+  /// @param tolerance relative L2 over a class's queries, kLeastTolerance or more. `device` and `surface`
+  /// must outlive this. Throws UsageError for a smaller tolerance.
+  AutoEvaluator(Device& device, const Surface& surface, double tolerance);
+  ~AutoEvaluator() override;
+  static constexpr double kLeastTolerance = 5e-4;
+
+  /// Chooses for every class of the sample. Queries of other classes go to `triangles`.
+  void calibrate(const std::vector<Query>& sample);
+  const std::vector<AutoChoice>& choices() const { return choices_; }
+
+  std::unique_ptr<PendingDensities> start(const std::vector<Query>& queries) override;
+  std::string name() const override { return "auto"; }
+  std::size_t device_bytes() const override;
+  double build_seconds() const override;
+  double device_seconds() const override;
+
+ private:
+  struct Candidate;
+  AutoChoice choose(const QueryClass& kind, const std::vector<Query>& sample);
+  bool keeps_tolerance(Candidate* candidate, const std::vector<Query>& sample,
+                       const std::vector<float>& expected, AutoChoice* choice);
+  double cost(const Candidate& candidate, const std::vector<Query>& sample);
+  Evaluator* evaluator(Candidate* candidate);
+
+  Device& device_;
+  const Surface& surface_;
+  double tolerance_;
+  std::vector<Candidate> candidates_;
+  std::map<QueryClass, std::size_t> candidate_of_;
+  std::vector<AutoChoice> choices_;
+};
+
+QueryClass class_of(const Query& query, int map_width, int map_height);
+
+/// Up to `each` queries of every class among queries 0 to count - 1: those whose numbers hash lowest.
+std::vector<Query> calibration_sample(std::size_t count, std::size_t each, int map_width, int map_height,
+                                      const std::function<Query(std::size_t)>& query);
+
+}  // namespace mica

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "host/engine/grid_evaluator.h"
+#include "host/engine/plan.h"
+
+namespace mica {
+
+/// What the kernel has to do for a material of glints, and nothing else.
+GridFeatures glint_features(const GlintsDescription& glints);
+
+/// Index of the evaluator of one of `materials`, which is of glints; planned now if it is the first to need
+/// it. It has no surface and no memory, only a kernel; materials with the same kernel and colours share it.
+/// Throws UsageError where light is gathered from all around: glints have no BRDF to draw from.
+int plan_glints(const std::vector<MaterialDescription>& materials, const MaterialDescription& material,
+                Plan* plan);
+
+/// The evaluator of a material of glints. @param device must outlive it.
+std::unique_ptr<GridEvaluator> make_glint_evaluator(const MaterialDescription& material, Device& device);
+
+}  // namespace mica

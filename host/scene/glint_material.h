@@ -1,0 +1,58 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "host/base/glints.h"
+#include "host/base/query.h"
+#include "host/scene/camera.h"
+#include "host/scene/description.h"
+#include "host/scene/lobes.h"
+#include "host/scene/shading.h"
+#include "host/scene/texture.h"
+
+namespace mica {
+
+/// A process of glints as one footprint sees it: where, and in which axes.
+struct GlintPlace {
+  Footprint footprint;
+  /// Of the tangent plane, in which half vectors are given.
+  Eigen::Vector3d x = Eigen::Vector3d::UnitX(), y = Eigen::Vector3d::UnitY();
+  double microroughness = 0;
+  GlintPoint point;
+};
+
+/// A material of glints without a map: their parameters at a point of a surface, and what D is multiplied
+/// with. [Kem25]
+class GlintMaterial {
+ public:
+  /// Throws FileError for a texture that cannot be used.
+  explicit GlintMaterial(const MaterialDescription& material);
+
+  /// The processes at a hit: one; two where a texture stretches glints, each step of the stretch being a
+  /// process of its own; three planes of the world where there is no uv. Their shares add up to one.
+  /// @param sigma_pixels standard deviation of the pixel filter.
+  std::vector<GlintPlace> places(const CameraRay& ray, const Hit& hit, const TangentFrame& frame,
+                                 double sigma_pixels) const;
+
+  /// What D is multiplied with, besides the light's irradiance: Fresnel, masking and the texture of the
+  /// reflection's colour.
+  /// @param place any of those of `hit`; @param seen by the eye from the light, whose weight stands for
+  /// glints below a coat.
+  Color weight(const Hit& hit, const GlintPlace& place, const TangentFrame& frame,
+               const Eigen::Vector3d& to_eye, const LobesSeen& seen, const Eigen::Vector3d& to_light) const;
+
+  /// Of a query, with the light's extent.
+  double microroughness(const GlintPlace& place, const LobesSeen& seen) const;
+
+ private:
+  void split_by_stretch(const Eigen::Vector2d& uv, std::vector<GlintPlace>* places) const;
+  void split_by_plane(const CameraRay& ray, const Hit& hit, const TangentFrame& frame, double sigma_pixels,
+                      std::vector<GlintPlace>* places) const;
+
+  MaterialDescription material_;
+  GlintsDescription glints_;
+  std::optional<Texture> density_, alpha_, microroughness_, stretch_, color_;
+};
+
+}  // namespace mica

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <vector>
+
+#include "host/scene/description.h"
+
+namespace mica {
+
+// What moves, at one frame: linear between its keyframes, still before the first and after the last.
+
+CameraDescription camera_at(const SceneDescription& scene, double frame);
+
+/// All keys of a light are of its own kind.
+std::vector<LightDescription> lights_at(const SceneDescription& scene, double frame);
+
+}  // namespace mica

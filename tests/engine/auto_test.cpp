@@ -1,0 +1,116 @@
+// `auto`: that it keeps its tolerance, says so, and answers the same whatever the batch.
+#include "host/engine/auto_evaluator.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+
+#include "host/base/error.h"
+#include "host/engine/accuracy.h"
+#include "host/reference/oracle.h"
+#include "host/surface/random.h"
+#include "tests/engine/bilinear_samples.h"
+
+namespace mica {
+namespace {
+
+Device& device() {
+  static Device shared(0);  // programs are built once for all tests
+  return shared;
+}
+
+Surface spectrum() {
+  return make_surface({"test", SpectrumSurface{256, 0.15, 8, 3}, Interpolation::bilinear}, nullptr);
+}
+
+/// Footprints of 2, 8 and 32 texels by turns, half vectors near the normals under them.
+std::vector<Query> mixed_queries(const Surface& surface, int count, std::uint64_t seed) {
+  std::vector<Query> queries(count);
+  for (int n = 0; n < count; ++n) {
+    const auto random = [&](std::uint64_t stream) { return synthesis::random_unit(seed, stream, n); };
+    const double sigma = 2 << (n % 3 * 2);
+    queries[n].footprint = make_footprint(surface, {random(0), random(1)}, sigma, sigma, 0);
+    queries[n].half_vector = surface.texel(std::lround(random(0) * 256), std::lround(random(1) * 256)) +
+                             0.02 * Eigen::Vector2d(random(2) - random(3), random(4) - random(5));
+    queries[n].roughness = 0.02;
+  }
+  return queries;
+}
+
+std::unique_ptr<AutoEvaluator> calibrated(const Surface& surface, double tolerance,
+                                          const std::vector<Query>& queries) {
+  auto chooser = std::make_unique<AutoEvaluator>(device(), surface, tolerance);
+  chooser->calibrate(calibration_sample(queries.size(), 40, surface.width(), surface.height(),
+                                        [&](std::size_t n) { return queries[n]; }));
+  return chooser;
+}
+
+/// Of queries that it was not calibrated with, against the oracle; the tolerance is kept at 95% confidence.
+TEST(Auto, KeepsItsToleranceOnQueriesThatItHasNotSeen) {
+  const Surface surface = spectrum();
+  const std::vector<Query> fresh = mixed_queries(surface, 120, 11);
+  std::vector<double> expected;
+  for (const reference::OracleResult& result : reference::Oracle(surface, 1e-5).evaluate(fresh))
+    expected.push_back(result.density);
+  for (const double tolerance : {0.01, 0.001}) {
+    const auto chooser = calibrated(surface, tolerance, mixed_queries(surface, 600, 10));
+    EXPECT_EQ(chooser->choices().size(), 3u);
+    for (const AutoChoice& choice : chooser->choices()) {
+      EXPECT_LE(choice.upper_bound, tolerance) << choice.evaluator;
+      EXPECT_LE(choice.relative_l2, choice.upper_bound) << choice.evaluator;
+    }
+    EXPECT_LE(relative_l2(chooser->evaluate(fresh), expected), tolerance);
+  }
+}
+
+TEST(Auto, TakesThePyramidForLargeFootprintsAndTexelsForSmallOnes) {
+  const Surface surface = spectrum();
+  const auto chooser = calibrated(surface, 0.01, mixed_queries(surface, 600, 10));
+  EXPECT_EQ(chooser->choices().front().evaluator.find("pyramid"), std::string::npos);
+  EXPECT_EQ(chooser->choices().back().evaluator.find("pyramid"), 0u) << chooser->choices().back().evaluator;
+}
+
+TEST(Auto, AnswersAreTheSameInAnyBatch) {
+  const Surface surface = spectrum();
+  const std::vector<Query> queries = mixed_queries(surface, 90, 10);
+  const auto whole = calibrated(surface, 0.01, queries), parts = calibrated(surface, 0.01, queries);
+  const std::vector<float> expected = whole->evaluate(queries);
+  for (std::size_t n = 0; n < queries.size(); n += 9) {
+    const auto first = queries.begin() + static_cast<long>(n);
+    const std::vector<float> some = parts->evaluate({first, first + 9});
+    for (std::size_t k = 0; k < some.size(); ++k) EXPECT_EQ(some[k], expected[n + k]);
+  }
+}
+
+/// A class that was not sampled is exact.
+TEST(Auto, AnswersWhatItWasNotCalibratedForWithTriangles) {
+  const Surface surface = spectrum();
+  AutoEvaluator chooser(device(), surface, 0.01);
+  chooser.calibrate({});
+  const std::vector<Query> queries = mixed_queries(surface, 12, 12);
+  std::vector<double> expected;
+  for (const reference::OracleResult& result : reference::Oracle(surface, 1e-6).evaluate(queries))
+    expected.push_back(result.density);
+  EXPECT_LE(relative_l2(chooser.evaluate(queries), expected), 1e-4);
+}
+
+TEST(Auto, RefusesToPromiseTooMuch) {
+  const Surface surface = spectrum();
+  EXPECT_THROW(AutoEvaluator(device(), surface, 1e-4), UsageError);
+  EXPECT_THROW(AutoEvaluator(device(), surface, std::nan("")), UsageError);
+}
+
+TEST(Auto, SamplesEveryClass) {
+  const Surface surface = spectrum();
+  const std::vector<Query> queries = mixed_queries(surface, 300, 10);
+  const std::vector<Query> sample =
+      calibration_sample(queries.size(), 7, 256, 256, [&](std::size_t n) { return queries[n]; });
+  EXPECT_EQ(sample.size(), 21u);
+  std::map<int, int> counts;
+  for (const Query& query : sample) ++counts[class_of(query, 256, 256).size];
+  for (const auto& [size, count] : counts) EXPECT_EQ(count, 7) << size;
+}
+
+}  // namespace
+}  // namespace mica

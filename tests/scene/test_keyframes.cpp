@@ -1,0 +1,48 @@
+#include <gtest/gtest.h>
+
+#include "host/scene/keyframes.h"
+
+namespace mica {
+namespace {
+
+using Eigen::Vector3d;
+
+SceneDescription moving() {
+  SceneDescription scene;
+  CameraDescription far = scene.camera, near = scene.camera;
+  far.position = {0, -8, 2};
+  far.fov_degrees = 20;
+  near.position = {0, -4, 0};
+  near.fov_degrees = 40;
+  scene.camera_keys = {{10, far}, {20, near}, {21, far}};
+  scene.lights = {PointLight{}, DiskLight{}};
+  DiskLight low, high;
+  low.position = {1, 0, 1};
+  high.position = {1, 0, 9};
+  high.radius = 1.5;
+  scene.light_keys = {{}, {{0, low}, {8, high}}};
+  return scene;
+}
+
+TEST(Keyframes, AreMetAndJoinedByLines) {
+  const SceneDescription scene = moving();
+  EXPECT_EQ(camera_at(scene, 10).position, Vector3d(0, -8, 2));
+  EXPECT_EQ(camera_at(scene, 20).position, Vector3d(0, -4, 0));
+  EXPECT_TRUE(camera_at(scene, 12.5).position.isApprox(Vector3d(0, -7, 1.5)));
+  EXPECT_NEAR(camera_at(scene, 12.5).fov_degrees, 25, 1e-12);
+  EXPECT_TRUE(camera_at(scene, 20.25).position.isApprox(Vector3d(0, -5, 0.5)));
+  EXPECT_TRUE(std::get<DiskLight>(lights_at(scene, 2)[1]).position.isApprox(Vector3d(1, 0, 3)));
+  EXPECT_NEAR(std::get<DiskLight>(lights_at(scene, 2)[1]).radius, 0.75, 1e-12);
+}
+
+TEST(Keyframes, StandStillBeforeAndAfter) {
+  const SceneDescription scene = moving();
+  EXPECT_EQ(camera_at(scene, -5).position, Vector3d(0, -8, 2));
+  EXPECT_EQ(camera_at(scene, 99).position, Vector3d(0, -8, 2));
+  EXPECT_EQ(std::get<DiskLight>(lights_at(scene, 9)[1]).position, Vector3d(1, 0, 9));
+  EXPECT_EQ(std::get<PointLight>(lights_at(scene, 4)[0]).position, PointLight{}.position);
+  EXPECT_EQ(camera_at(SceneDescription{}, 7).position, CameraDescription{}.position);
+}
+
+}  // namespace
+}  // namespace mica
