@@ -10,7 +10,7 @@
 namespace mica::bench {
 namespace {
 
-constexpr std::size_t kLeastQueries = 64;
+constexpr std::size_t kLeastQueries = 16;
 
 double seconds_for(Evaluator* evaluator, const std::vector<Query>& queries) {
   const Stopwatch watch;
@@ -18,18 +18,19 @@ double seconds_for(Evaluator* evaluator, const std::vector<Query>& queries) {
   return watch.seconds();
 }
 
-/// Part of the queries that takes about as long as a repeat may.
+/// Part of the queries that takes about as long as a repeat may; empty when the least takes far longer.
 std::vector<Query> affordable(Evaluator* evaluator, const std::vector<Query>& queries, double seconds) {
-  std::vector<Query> sample = thinned(queries, std::max<std::size_t>(queries.size() / 256, 1));
+  constexpr double far_longer = 25;
+  std::size_t stride = std::max<std::size_t>(queries.size() / kLeastQueries, 1);
+  std::vector<Query> sample = thinned(queries, stride);
   evaluator->evaluate(sample);  // drivers compile on first use
-  std::size_t stride = queries.size() / sample.size();
-  for (double taken = seconds_for(evaluator, sample); stride > 1 && taken < 0.3 * seconds;) {
+  double taken = seconds_for(evaluator, sample);
+  if (taken > far_longer * seconds) return {};
+  while (stride > 1 && taken < 0.3 * seconds) {
     stride = std::max<std::size_t>(stride / 4, 1);
     sample = thinned(queries, stride);
     taken = seconds_for(evaluator, sample);
   }
-  while (seconds_for(evaluator, sample) > 3 * seconds && sample.size() > 2 * kLeastQueries)
-    sample = thinned(sample, 2);
   return sample;
 }
 
@@ -59,6 +60,7 @@ double share_of_bandwidth(const Measurement& m, const Surface& surface, double s
 Speed measure_speed(Evaluator* evaluator, const std::vector<Query>& queries, const Effort& effort,
                     std::vector<Query>* used) {
   const std::vector<Query> batch = affordable(evaluator, queries, effort.seconds_a_repeat);
+  if (batch.empty()) return {};
   std::vector<double> seconds;
   for (int repeat = 0; repeat < effort.repeats; ++repeat) seconds.push_back(seconds_for(evaluator, batch));
   const Timing timing = timing_of(seconds);
@@ -97,6 +99,10 @@ Measurement measure(const Prepared& prepared, const Surface& surface, const Mach
   Evaluator& evaluator = *prepared.evaluator;
   std::vector<Query> batch;
   m.speed = measure_speed(&evaluator, queries, effort, &batch);
+  if (m.speed.queries == 0) {
+    m.refused = "too slow to be measured here";
+    return m;
+  }
   m.errors = errors_of(evaluator.evaluate(few), references);
   m.build_seconds = evaluator.build_seconds();  // now: some build what a footprint needs when it comes
   m.device_bytes = evaluator.device_bytes();

@@ -17,6 +17,7 @@ struct Effort {
 
 /// Wall-clock speed of whole calls, with transfers: a warm-up, then the repeats.
 /// @param queries coherent; thinned for evaluators that are too slow for all of them.
+/// No queries at all where sixteen take 25 times as long as a repeat may.
 /// @param used filled with the queries of a repeat when not null.
 Speed measure_speed(Evaluator* evaluator, const std::vector<Query>& queries, const Effort& effort,
                     std::vector<Query>* used = nullptr);

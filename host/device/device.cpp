@@ -74,7 +74,7 @@ Device::Device(int index) : device_(choose(index)), info_(describe(device_)) {
 
 cl::Program Device::program(const std::string& file, const std::string& options) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  const auto found = programs_.find(file + options);
+  const auto found = programs_.find(file + " " + options);
   if (found != programs_.end()) return found->second;
 
   const std::string source = expand_kernel_source(file);
@@ -91,7 +91,7 @@ cl::Program Device::program(const std::string& file, const std::string& options)
     cache.store(program);
     spdlog::debug("built {} {}", file, options);
   }
-  return programs_.emplace(file + options, program).first->second;
+  return programs_.emplace(file + " " + options, program).first->second;
 }
 
 cl::Kernel Device::kernel(const std::string& file, const std::string& name, const std::string& options) {
@@ -108,12 +108,44 @@ cl::Kernel Device::kernel(const std::string& file, const std::string& name, cons
   }
 }
 
+std::vector<std::string> Device::programs() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  std::vector<std::string> names;
+  for (const auto& [name, program] : programs_) names.push_back(name);
+  return names;
+}
+
+namespace {
+
+/// A buffer's share of its device's bytes, which ends when OpenCL destroys the buffer.
+struct CountedBytes {
+  std::shared_ptr<BufferBytes> bytes;
+  std::size_t count;
+};
+void CL_CALLBACK stop_counting(cl_mem, void* counted) {
+  const std::unique_ptr<CountedBytes> own(static_cast<CountedBytes*>(counted));
+  own->bytes->now -= own->count;
+}
+
+void count_bytes(const std::shared_ptr<BufferBytes>& bytes, std::size_t count, cl::Buffer* buffer) {
+  auto counted = std::make_unique<CountedBytes>(CountedBytes{bytes, count});
+  buffer->setDestructorCallback(stop_counting, counted.get());
+  counted.release();  // the callback's
+  const std::size_t now = bytes->now += count;
+  for (std::size_t peak = bytes->peak; now > peak && !bytes->peak.compare_exchange_weak(peak, now);) {
+  }
+}
+
+}  // namespace
+
 cl::Buffer Device::buffer(std::size_t bytes, cl_mem_flags flags, const std::string& what) const {
   if (bytes > info_.allocation_bytes)
     throw DeviceError(fmt::format("{} takes {} MiB in one buffer, but {} allows {} MiB", what, bytes >> 20,
                                   info_.name, info_.allocation_bytes >> 20));
   try {
-    return cl::Buffer(context_, flags, std::max<std::size_t>(bytes, 1));
+    cl::Buffer buffer(context_, flags, std::max<std::size_t>(bytes, 1));
+    count_bytes(bytes_, bytes, &buffer);
+    return buffer;
   } catch (const cl::Error& error) {
     throw opencl_error(error, fmt::format("allocating {} ({} bytes)", what, bytes));
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <map>
 #include <memory>
@@ -28,6 +29,11 @@ std::vector<DeviceInfo> list_devices();
 /// How the sixteen lanes of a wave are mapped to a device; see kernels/wave.h.
 enum class WaveForm { vectors, items };
 
+/// Bytes of a device's buffers, as they come and go.
+struct BufferBytes {
+  std::atomic<std::size_t> now{0}, peak{0};
+};
+
 /// An OpenCL device with its queue and its programs. Programs are built once for each (source, options), kept
 /// for the life of the device, and cached on disk as binaries, keyed by source, options, device and driver.
 class Device {
@@ -49,6 +55,11 @@ class Device {
   /// An uninitialised buffer. Throws DeviceError naming `what` when it exceeds the device's limits.
   cl::Buffer buffer(std::size_t bytes, cl_mem_flags flags, const std::string& what) const;
 
+  /// What was compiled so far: files with their options.
+  std::vector<std::string> programs() const;
+  /// The most that all buffers together have taken at a time.
+  std::size_t peak_bytes() const { return bytes_->peak; }
+
   /// A read-only buffer with a copy of `data`.
   template <typename T>
   cl::Buffer upload(const std::vector<T>& data, const std::string& what) const {
@@ -63,7 +74,8 @@ class Device {
   DeviceInfo info_;
   cl::Context context_;
   cl::CommandQueue queue_;
-  std::mutex mutex_;
+  std::shared_ptr<BufferBytes> bytes_ = std::make_shared<BufferBytes>();  // shared with the buffers
+  mutable std::mutex mutex_;
   std::map<std::string, cl::Program> programs_;
 };
 

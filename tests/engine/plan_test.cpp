@@ -1,0 +1,127 @@
+// Only what is needed: for every job that is shipped, what is built and allocated is what the plan names.
+#include "host/engine/plan.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <set>
+#include <sstream>
+#include <variant>
+
+#include "host/engine/built_job.h"
+#include "host/engine/render.h"
+#include "host/surface/map_size.h"
+
+namespace mica {
+namespace {
+
+std::vector<std::string> shipped_jobs() {
+  std::vector<std::string> paths;
+  for (const auto& entry : std::filesystem::directory_iterator(MICA_SOURCE_DIR "/data/jobs"))
+    if (entry.path().extension() == ".toml") paths.push_back(entry.path().string());
+  std::sort(paths.begin(), paths.end());
+  return paths;
+}
+
+/// Smaller maps, so that the test is short and that batches are a good part of the memory.
+template <typename Kind>
+void shrink(Kind* kind) {
+  kind->resolution = std::min(kind->resolution, 512);
+}
+void shrink(MapFile*) {}
+void shrink(LayersSurface* layers) {
+  for (SurfaceLayer& layer : layers->layers)
+    std::visit([](auto& source) { shrink(&source); }, layer.surface.source);
+}
+
+/// The job as it is shipped, but for the sizes of its picture and maps, and without its audit.
+Job small_job(const std::string& path) {
+  Job job = load_job(path, {"image.width=96", "image.height=54", "image.subpixels=2"});
+  for (SurfaceDescription& surface : job.surfaces)
+    std::visit([](auto& source) { shrink(&source); }, surface.source);
+  job.audit.samples = 0;
+  return job;
+}
+
+/// A kernel file and its features: options of -D whose value is not 0, and those of the kernel's own choice.
+struct Program {
+  std::string file;
+  std::set<std::string> features;
+};
+Program parse(const std::string& text) {
+  std::istringstream words(text);
+  Program program;
+  words >> program.file;
+  for (std::string word; words >> word;) {
+    if (word.rfind("-DMICA_WAVE_ITEMS", 0) == 0 || word.rfind("-cl-std", 0) == 0) continue;
+    if (word.size() > 2 && word.substr(word.size() - 2) == "=0") continue;
+    program.features.insert(word);
+  }
+  return program;
+}
+bool operator==(const Program& a, const Program& b) {
+  return a.file == b.file && a.features == b.features;
+}
+
+class ShippedJob : public testing::TestWithParam<std::string> {};
+
+TEST_P(ShippedJob, BuildsNothingThatItsPlanDoesNotName) {
+  const Job job = small_job(GetParam());
+  const Plan plan = make_plan(job);
+  Device device(0);
+  const RenderResult result = render(job, plan, device, [](int, int) {});
+  std::vector<Program> planned;
+  for (const PlannedEvaluator& evaluator : plan.evaluators) planned.push_back(parse(evaluator.kernel));
+  for (const std::string& name : device.programs())
+    EXPECT_NE(std::find(planned.begin(), planned.end(), parse(name)), planned.end())
+        << name << " was compiled, but the plan says:\n"
+        << describe(plan);
+  EXPECT_LE(device.programs().size(), plan.evaluators.size());
+
+  std::set<std::string> used;
+  for (const ShapeDescription& shape : job.scene.shapes) used.insert(shape.material);
+  for (const PlannedEvaluator& evaluator : plan.evaluators)
+    for (const std::string& material : evaluator.materials) EXPECT_TRUE(used.count(material)) << material;
+}
+
+/// Structures are known to the byte; batches are planned for a picture that shapes fill to the last pixel.
+TEST_P(ShippedJob, TakesTheStructuresThatItsPlanSaysAndNoMoreInAll) {
+  const Job job = small_job(GetParam());
+  const Plan plan = make_plan(job);
+  Device device(0);
+  const RenderResult result = render(job, plan, device, [](int, int) {});
+  std::size_t structures = 0;
+  for (const PlannedEvaluator& evaluator : plan.evaluators) structures += evaluator.device_bytes;
+  const double planned = static_cast<double>(plan.device_bytes),
+               peak = static_cast<double>(device.peak_bytes());
+  std::printf("%s: structures %zu planned, %zu built; device %.0f planned, %.0f at the most\n",
+              GetParam().c_str(), structures, result.device_bytes, planned, peak);
+  EXPECT_NEAR(static_cast<double>(structures), static_cast<double>(result.device_bytes),
+              0.1 * static_cast<double>(result.device_bytes));
+  EXPECT_LE(peak, planned);
+  EXPECT_GE(peak, 0.9 * static_cast<double>(structures));
+}
+
+/// The sizes that the other tests do not try.
+TEST_P(ShippedJob, TakesTheStructuresThatItsPlanSaysAtFullSize) {
+  const Job job = load_job(GetParam(), {"image.width=8", "image.height=4", "image.subpixels=1"});
+  const Plan plan = make_plan(job);
+  Device device(0);
+  const BuiltJob built(job, plan, device);
+  std::size_t structures = 0, surfaces = 0, normals = 0;
+  for (const PlannedEvaluator& evaluator : plan.evaluators)
+    structures += evaluator.device_bytes, surfaces += evaluator.host_bytes;
+  for (const Surface* surface : built.surfaces())
+    if (surface) normals += surface->normals().size() * sizeof(Eigen::Vector2d);
+  EXPECT_NEAR(static_cast<double>(structures), static_cast<double>(built.device_bytes()),
+              0.1 * static_cast<double>(built.device_bytes()));
+  EXPECT_EQ(surfaces, normals);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ShippedJob, testing::ValuesIn(shipped_jobs()),
+                         [](const auto& info) { return std::filesystem::path(info.param).stem().string(); });
+
+}  // namespace
+}  // namespace mica
