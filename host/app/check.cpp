@@ -37,7 +37,9 @@ int run(const Options& options) {
   const std::optional<Estimate> expected = try_estimate(job, plan, options.device);
   if (!options.json.empty()) write_file_atomically(options.json, plan_json(job, plan, expected));
   fmt::print("{}", describe(plan));
-  if (expected) fmt::print("estimate: {} queries, {:.1f} s\n", expected->queries, expected->seconds);
+  if (expected)
+    fmt::print("estimate: {} queries, {:.1f} s, {:.1f} MiB on the device\n", expected->queries,
+               expected->seconds, static_cast<double>(expected->device_bytes) / (1 << 20));
   return 0;
 }
 

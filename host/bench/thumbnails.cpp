@@ -22,7 +22,7 @@ std::vector<Query> window_queries(const Surface& surface, int side, double* radi
   double squares = 0, count = 0;
   for (int j = -reach; j <= reach; ++j) {
     for (int i = -reach; i <= reach; ++i) {
-      const Eigen::Vector2d n =
+      const Eigen::Vector2d& n =
           surface.texel(std::lround(mean_texels.x()) + i, std::lround(mean_texels.y()) + j);
       sum += n, squares += n.squaredNorm(), count += 1;
     }

@@ -57,8 +57,11 @@ class Device {
 
   /// What was compiled so far: files with their options.
   std::vector<std::string> programs() const;
-  /// The most that all buffers together have taken at a time.
+  /// Of all buffers that there are.
+  std::size_t bytes() const { return bytes_->now; }
+  /// The most that all buffers together have taken at a time, since the last call of `forget_peak`.
   std::size_t peak_bytes() const { return bytes_->peak; }
+  void forget_peak() { bytes_->peak = bytes_->now.load(); }
 
   /// A read-only buffer with a copy of `data`.
   template <typename T>

@@ -9,7 +9,7 @@
 namespace mica {
 namespace {
 
-constexpr int kSampleRows = 24;
+constexpr int kSampleRows = 48;
 constexpr std::size_t kSampleQueries = 8192;
 constexpr std::size_t kSamplePoints = 512;  // where light is gathered
 
@@ -22,27 +22,47 @@ void thin(std::size_t all, std::size_t target, std::vector<Item>* items) {
   items->swap(kept);
 }
 
+/// Items of every block of rows, when each of `sampled` rows stands for as many around it.
+std::vector<double> items_of_blocks(const std::vector<std::size_t>& sampled, int rows_a_block, int height) {
+  std::vector<double> blocks;
+  for (int row = 0; row < height; ++row) {
+    if (row % rows_a_block == 0) blocks.push_back(0);
+    blocks.back() += static_cast<double>(sampled[row * sampled.size() / height]);
+  }
+  return blocks;
+}
+
+/// Bytes an item that evaluating takes on the device beside what is there before.
+template <typename Evaluate>
+double batch_bytes(Device& device, std::size_t items, const Evaluate& evaluate) {
+  const std::size_t before = device.bytes();
+  device.forget_peak();
+  evaluate();
+  return static_cast<double>(device.peak_bytes() - before) /
+         static_cast<double>(std::max<std::size_t>(items, 1));
+}
+
 /// What gathering light in some rows takes.
 struct Gathered {
   std::size_t queries = 0;
-  double seconds = 0;
+  double seconds = 0, bytes_a_point = 0;
 };
 
 /// Measures a few of the rows' points, of which it leaves nothing.
-Gathered measure_gathering(const BuiltJob& built, std::vector<TracedRows>* samples) {
+Gathered measure_gathering(const BuiltJob& built, Device& device, std::vector<TracedRows>* samples) {
   const auto gather = [&](TracedRows* rows) {
     return add_lit_brdfs(built, rows) + gather_light(built, rows);
   };
   std::size_t points = 0, measured = 0, questions = 0;
   for (const TracedRows& rows : *samples) points += rows.points.size() + rows.lit.size();
-  double seconds = 0;
+  double seconds = 0, bytes_a_point = 0;
   for (TracedRows& rows : *samples) {
     thin(points, kSamplePoints, &rows.points);
     thin(points, kSamplePoints, &rows.lit);
     const std::size_t here = rows.points.size() + rows.lit.size();
     if (!measured && here) {  // drivers compile on first use
       TracedRows warm_up = rows;
-      gather(&warm_up);
+      bytes_a_point = batch_bytes(device, here, [&] { gather(&warm_up); });
     }
     const Stopwatch watch;
     questions += gather(&rows);
@@ -50,7 +70,64 @@ Gathered measure_gathering(const BuiltJob& built, std::vector<TracedRows>* sampl
   }
   if (!measured) return {};
   const double scale = static_cast<double>(points) / static_cast<double>(measured);
-  return {static_cast<std::size_t>(scale * static_cast<double>(questions)), scale * seconds};
+  return {static_cast<std::size_t>(scale * static_cast<double>(questions)), scale * seconds, bytes_a_point};
+}
+
+/// Of the batches that are on the device together: those of a block, and of the one after or its gathering.
+double most_bytes_in_flight(const std::vector<double>& queries, double bytes_a_query,
+                            const std::vector<double>& points, double bytes_a_point) {
+  double most = 0, before = 0;
+  for (std::size_t block = 0; block < queries.size(); ++block) {
+    const double evaluated = bytes_a_query * queries[block];
+    most = std::max(most, before + std::max(evaluated, bytes_a_point * points[block]));
+    before = evaluated;
+  }
+  return most;
+}
+
+/// Rows of the picture at equal distances, traced one by one.
+struct SampledRows {
+  std::vector<TracedRows> rows;
+  std::vector<std::size_t> queries, points;  ///< of every row
+  std::size_t all_queries = 0;
+  double seconds = 0;
+};
+
+SampledRows trace_samples(const Scene& scene, int height) {
+  SampledRows sampled;
+  const int count = std::min(kSampleRows, height);
+  const Stopwatch tracing;
+  for (int n = 0; n < count; ++n) {
+    const TracedRows& row = sampled.rows.emplace_back(scene.trace((2 * n + 1) * height / (2 * count), 1));
+    sampled.queries.push_back(row.queries.size());
+    sampled.points.push_back(row.points.size() + row.lit.size());
+    sampled.all_queries += row.queries.size();
+  }
+  sampled.seconds = tracing.seconds();
+  return sampled;
+}
+
+/// What evaluating the densities of the sampled rows takes.
+struct Evaluated {
+  double device_seconds = 0, bytes_a_query = 0;
+};
+
+/// Measures a few of the rows' queries, in one batch.
+Evaluated measure_densities(const BuiltJob& built, Device& device, const SampledRows& sampled) {
+  TracedRows sample;
+  for (const TracedRows& row : sampled.rows) {
+    std::vector<GlintQuery> some = row.queries;
+    thin(sampled.all_queries, kSampleQueries, &some);
+    sample.queries.insert(sample.queries.end(), some.begin(), some.end());
+  }
+  const std::size_t count = sample.queries.size();
+  if (!count) return {};
+  const auto evaluate = [&] { PendingBlock(sample, built).wait(); };
+  const double bytes_a_query = batch_bytes(device, count, evaluate);  // and drivers compile on first use
+  const double before = built.device_seconds();
+  evaluate();
+  const double scale = static_cast<double>(sampled.all_queries) / static_cast<double>(count);
+  return {scale * (built.device_seconds() - before), bytes_a_query};
 }
 
 }  // namespace
@@ -59,39 +136,22 @@ Estimate estimate(const Job& job, const Plan& plan, Device& device) {
   const Stopwatch building;
   const BuiltJob built(job, plan, device);
   const double build_seconds = building.seconds();
+  SampledRows sampled = trace_samples(built.scene(), job.image.height);
+  const Gathered gathered = measure_gathering(built, device, &sampled.rows);
+  const Evaluated evaluated = measure_densities(built, device, sampled);
 
-  const int rows = std::min(kSampleRows, job.image.height);
-  std::vector<TracedRows> samples;
-  std::size_t queries = 0;
-  const Stopwatch tracing;
-  for (int n = 0; n < rows; ++n) {
-    samples.push_back(built.scene().trace((2 * n + 1) * job.image.height / (2 * rows), 1));
-    queries += samples.back().queries.size();
-  }
-  const double trace_seconds = tracing.seconds();
-
-  const Gathered gathered = measure_gathering(built, &samples);
-  std::size_t evaluated = 0;
-  double device_seconds = 0;
-  for (TracedRows& sample : samples) {
-    thin(queries, kSampleQueries, &sample.queries);
-    evaluated += sample.queries.size();
-  }
-  const auto evaluate = [&](const TracedRows& sample) { PendingBlock(sample, built).wait(); };
-  evaluate(*std::max_element(samples.begin(), samples.end(), [](const TracedRows& a, const TracedRows& b) {
-    return a.queries.size() < b.queries.size();
-  }));  // warm-up: drivers compile on first use
-  const double before = built.device_seconds();
-  for (const TracedRows& sample : samples) evaluate(sample);
-  if (evaluated)
-    device_seconds = (built.device_seconds() - before) * static_cast<double>(queries) / evaluated;
-
-  const double scale = static_cast<double>(job.image.height) / rows;
+  const double scale = static_cast<double>(job.image.height) / static_cast<double>(sampled.rows.size());
   // A CPU device takes turns with the tracing host, any other works beside it.
-  const double work =
-      device.info().is_cpu ? trace_seconds + device_seconds : std::max(trace_seconds, device_seconds);
-  return {static_cast<std::size_t>(scale * static_cast<double>(queries + gathered.queries)),
-          build_seconds + scale * (work + gathered.seconds)};
+  const double work = device.info().is_cpu ? sampled.seconds + evaluated.device_seconds
+                                           : std::max(sampled.seconds, evaluated.device_seconds);
+  const auto of_blocks = [&](const std::vector<std::size_t>& items) {
+    return items_of_blocks(items, plan.rows_a_block, job.image.height);
+  };
+  const double in_flight = most_bytes_in_flight(of_blocks(sampled.queries), evaluated.bytes_a_query,
+                                                of_blocks(sampled.points), gathered.bytes_a_point);
+  return {static_cast<std::size_t>(scale * static_cast<double>(sampled.all_queries + gathered.queries)),
+          build_seconds + scale * (work + gathered.seconds),
+          built.device_bytes() + static_cast<std::size_t>(in_flight)};
 }
 
 }  // namespace mica

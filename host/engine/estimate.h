@@ -11,7 +11,8 @@ namespace mica {
 /// What rendering a job will take, found by tracing a few rows and evaluating a few of their queries.
 struct Estimate {
   std::size_t queries = 0;
-  double seconds = 0;  ///< wall clock, without the audit
+  double seconds = 0;            ///< wall clock, without the audit
+  std::size_t device_bytes = 0;  ///< of structures and batches, at the most at a time
 };
 
 /// Builds what the plan names and tries it on a sample. Throws mica::Error.

@@ -59,6 +59,7 @@ class PendingGrid : public GridDensities {
 
   std::deque<GridBatch> batches;  // a deque: what the device reads stays where it is
   std::vector<std::vector<float>> rows;
+  std::vector<cl::Buffer> buffers;  // kept, so that memory does not depend on who is faster, host or device
   std::vector<cl::Event> kernels, done;
   std::shared_ptr<double> device_seconds;
 };
@@ -105,6 +106,7 @@ void GridEvaluator::enqueue(GridBatch batch, std::size_t first, std::size_t coun
     const std::size_t items = wave_form_ == WaveForm::items ? kept.pitch : kept.pitch / kWaveLanes;
     cl::Event kernel_done;
     device_.queue().enqueueNDRangeKernel(kernel_, cl::NullRange, items, kWaveLanes, nullptr, &kernel_done);
+    pending->buffers.insert(pending->buffers.end(), {fields, densities});
     pending->kernels.push_back(kernel_done);
     for (std::size_t color = 0; color < pending->rows.size(); ++color) {
       device_.queue().enqueueReadBuffer(densities, CL_FALSE, color * row_bytes, count * sizeof(float),

@@ -114,6 +114,7 @@ class MapBatches<DeviceQuery>::Densities : public PendingDensities {
   std::vector<DeviceQuery> queries;  // alive until the device has read them
   std::vector<std::uint32_t> order;  // of the query at each place
   std::vector<float> results;
+  std::vector<cl::Buffer> buffers;  // kept, so that memory does not depend on who is faster, host or device
   std::vector<cl::Event> kernels, done;
   std::shared_ptr<double> device_seconds;
 };
@@ -188,6 +189,7 @@ void MapBatches<DeviceQuery>::enqueue(std::size_t first, Densities* pending) {
     device_.queue().enqueueNDRangeKernel(kernel_, cl::NullRange, global, local, nullptr, &kernel_done);
     device_.queue().enqueueReadBuffer(output, CL_FALSE, 0, output_bytes,
                                       pending->results.data() + first * answers_, nullptr, &read_done);
+    pending->buffers.insert(pending->buffers.end(), {input, output});
     pending->kernels.push_back(kernel_done);
     pending->done.push_back(read_done);
     device_.queue().flush();

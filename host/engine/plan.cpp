@@ -177,7 +177,7 @@ std::string describe(const Plan& plan) {
   text += fmt::format("channels {}\n", fmt::join(plan.channels, " "));
   text += fmt::format("blocks of {} rows, batches of at most {} queries\n", plan.rows_a_block,
                       plan.queries_a_batch);
-  text += fmt::format("memory {:.0f} MiB on the device, {:.0f} MiB on the host\n",
+  text += fmt::format("memory at most {:.0f} MiB on the device, {:.0f} MiB on the host\n",
                       mebibytes(plan.device_bytes), mebibytes(plan.host_bytes));
   return text;
 }

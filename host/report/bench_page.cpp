@@ -81,8 +81,7 @@ constexpr double kLeastError = 1e-7;  // what single precision can answer; chart
 
 std::string scatter(const Cell& cell) {
   Chart chart;
-  chart.title =
-      fmt::format("{}, σ {} texels, roughness {}", cell.surface, cell.sigma_texels, cell.roughness);
+  chart.title = fmt::format("{}, σ {} texels, roughness {}", cell.surface, cell.sigma_texels, cell.roughness);
   chart.x_label = "queries a second →";
   chart.y_label = "relative L2 error";
   chart.pareto = true;

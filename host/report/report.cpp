@@ -57,7 +57,10 @@ ordered_json to_json(const DeviceInfo& device) {
 
 std::string plan_json(const Job& job, const Plan& plan, const std::optional<Estimate>& estimate) {
   ordered_json json = {{"mica", version()}, {"job", to_json(job)}, {"plan", to_json(plan)}};
-  if (estimate) json["estimate"] = {{"queries", estimate->queries}, {"seconds", estimate->seconds}};
+  if (estimate)
+    json["estimate"] = {{"queries", estimate->queries},
+                        {"seconds", estimate->seconds},
+                        {"device_bytes", estimate->device_bytes}};
   return json.dump(2) + "\n";
 }
 
