@@ -35,7 +35,7 @@ std::function<Eigen::Vector3d(std::uint64_t)> cosines(double low, double high, s
 std::vector<Surface> surfaces() {
   std::vector<Eigen::Vector2d> rim;
   for (int n = 0; n < 64 * 64; ++n) {
-    const std::uint64_t step = n % 64, turn = n / 64;
+    const int step = n % 64, turn = n / 64;
     const double angle = 2 * kPi * step / 64 + 0.4 * std::sin(2 * kPi * turn / 64.0);
     rim.emplace_back(0.98 * std::cos(angle), 0.98 * std::sin(angle));
   }
