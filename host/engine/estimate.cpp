@@ -1,6 +1,7 @@
 #include "host/engine/estimate.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "host/base/stopwatch.h"
 #include "host/engine/built_job.h"
@@ -13,13 +14,12 @@ constexpr int kSampleRows = 48;
 constexpr std::size_t kSampleQueries = 8192;
 constexpr std::size_t kSamplePoints = 512;  // where light is gathered
 
-/// Keeps every n-th item of one row, so that about `target` are left of `all` in all rows.
+/// Adds every n-th item of one row, so that about `target` are taken of `all` in all rows.
 template <typename Item>
-void thin(std::size_t all, std::size_t target, std::vector<Item>* items) {
+void append_some(const std::vector<Item>& row, std::size_t all, std::size_t target,
+                 std::vector<Item>* items) {
   const std::size_t stride = all / target + 1;
-  std::vector<Item> kept;
-  for (std::size_t n = 0; n < items->size(); n += stride) kept.push_back((*items)[n]);
-  items->swap(kept);
+  for (std::size_t n = 0; n < row.size(); n += stride) items->push_back(row[n]);
 }
 
 /// Items of every block of rows, when each of `sampled` rows stands for as many around it.
@@ -32,14 +32,18 @@ std::vector<double> items_of_blocks(const std::vector<std::size_t>& sampled, int
   return blocks;
 }
 
-/// Bytes an item that evaluating takes on the device beside what is there before.
+/// Bytes an item that evaluating takes on the device beside what is there before: the lesser of two tries,
+/// since drivers may free what is done with a moment too late. They compile on first use, too.
 template <typename Evaluate>
 double batch_bytes(Device& device, std::size_t items, const Evaluate& evaluate) {
-  const std::size_t before = device.bytes();
-  device.forget_peak();
-  evaluate();
-  return static_cast<double>(device.peak_bytes() - before) /
-         static_cast<double>(std::max<std::size_t>(items, 1));
+  std::size_t least = std::numeric_limits<std::size_t>::max();
+  for (int attempt = 0; attempt < 2; ++attempt) {
+    const std::size_t before = device.bytes();
+    device.forget_peak();
+    evaluate();
+    least = std::min(least, device.peak_bytes() - before);
+  }
+  return static_cast<double>(least) / static_cast<double>(std::max<std::size_t>(items, 1));
 }
 
 /// What gathering light in some rows takes.
@@ -48,29 +52,28 @@ struct Gathered {
   double seconds = 0, bytes_a_point = 0;
 };
 
-/// Measures a few of the rows' points, of which it leaves nothing.
-Gathered measure_gathering(const BuiltJob& built, Device& device, std::vector<TracedRows>* samples) {
-  const auto gather = [&](TracedRows* rows) {
-    return add_lit_brdfs(built, rows) + gather_light(built, rows);
-  };
-  std::size_t points = 0, measured = 0, questions = 0;
-  for (const TracedRows& rows : *samples) points += rows.points.size() + rows.lit.size();
-  double seconds = 0, bytes_a_point = 0;
-  for (TracedRows& rows : *samples) {
-    thin(points, kSamplePoints, &rows.points);
-    thin(points, kSamplePoints, &rows.lit);
-    const std::size_t here = rows.points.size() + rows.lit.size();
-    if (!measured && here) {  // drivers compile on first use
-      TracedRows warm_up = rows;
-      bytes_a_point = batch_bytes(device, here, [&] { gather(&warm_up); });
-    }
-    const Stopwatch watch;
-    questions += gather(&rows);
-    seconds += watch.seconds(), measured += here;
+/// Measures a few of the rows' points, all at a time.
+Gathered measure_gathering(const BuiltJob& built, Device& device, const std::vector<TracedRows>& rows) {
+  std::size_t all = 0;
+  for (const TracedRows& row : rows) all += row.points.size() + row.lit.size();
+  if (!all) return {};
+  TracedRows sample = rows.front();
+  sample.points.clear(), sample.lit.clear();
+  for (const TracedRows& row : rows) {
+    append_some(row.points, all, kSamplePoints, &sample.points);
+    append_some(row.lit, all, kSamplePoints, &sample.lit);
   }
-  if (!measured) return {};
-  const double scale = static_cast<double>(points) / static_cast<double>(measured);
-  return {static_cast<std::size_t>(scale * static_cast<double>(questions)), scale * seconds, bytes_a_point};
+  const std::size_t measured = sample.points.size() + sample.lit.size();
+  const auto gather = [&] {
+    TracedRows copy = sample;  // gathering empties it
+    return add_lit_brdfs(built, &copy) + gather_light(built, &copy);
+  };
+  const double bytes_a_point = batch_bytes(device, measured, gather);
+  const Stopwatch watch;
+  const std::size_t questions = gather();
+  const double scale = static_cast<double>(all) / static_cast<double>(measured);
+  return {static_cast<std::size_t>(scale * static_cast<double>(questions)), scale * watch.seconds(),
+          bytes_a_point};
 }
 
 /// Of the batches that are on the device together: those of a block, and of the one after or its gathering.
@@ -115,15 +118,12 @@ struct Evaluated {
 /// Measures a few of the rows' queries, in one batch.
 Evaluated measure_densities(const BuiltJob& built, Device& device, const SampledRows& sampled) {
   TracedRows sample;
-  for (const TracedRows& row : sampled.rows) {
-    std::vector<GlintQuery> some = row.queries;
-    thin(sampled.all_queries, kSampleQueries, &some);
-    sample.queries.insert(sample.queries.end(), some.begin(), some.end());
-  }
+  for (const TracedRows& row : sampled.rows)
+    append_some(row.queries, sampled.all_queries, kSampleQueries, &sample.queries);
   const std::size_t count = sample.queries.size();
   if (!count) return {};
   const auto evaluate = [&] { PendingBlock(sample, built).wait(); };
-  const double bytes_a_query = batch_bytes(device, count, evaluate);  // and drivers compile on first use
+  const double bytes_a_query = batch_bytes(device, count, evaluate);
   const double before = built.device_seconds();
   evaluate();
   const double scale = static_cast<double>(sampled.all_queries) / static_cast<double>(count);
@@ -136,8 +136,8 @@ Estimate estimate(const Job& job, const Plan& plan, Device& device) {
   const Stopwatch building;
   const BuiltJob built(job, plan, device);
   const double build_seconds = building.seconds();
-  SampledRows sampled = trace_samples(built.scene(), job.image.height);
-  const Gathered gathered = measure_gathering(built, device, &sampled.rows);
+  const SampledRows sampled = trace_samples(built.scene(), job.image.height);
+  const Gathered gathered = measure_gathering(built, device, sampled.rows);
   const Evaluated evaluated = measure_densities(built, device, sampled);
 
   const double scale = static_cast<double>(job.image.height) / static_cast<double>(sampled.rows.size());

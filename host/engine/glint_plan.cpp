@@ -44,8 +44,9 @@ int plan_glints(const std::vector<MaterialDescription>& materials, const Materia
                 Plan* plan) {
   if (plan->gathers_light) check_gathers(material);
   std::vector<PlannedEvaluator>* planned = &plan->evaluators;
-  const std::string kernel =
-      "grid.cl " + grid_kernel_options(material.glints->distribution, glint_features(*material.glints));
+  const Distribution distribution = material.glints->distribution;
+  std::string kernel = "grid.cl " + grid_kernel_options(distribution, glint_features(*material.glints));
+  if (plan->gathers_light) kernel += ", grid_brdf.cl " + grid_kernel_options(distribution, GridFeatures{});
   auto found = std::find_if(planned->begin(), planned->end(), [&](const PlannedEvaluator& p) {
     return !plan->gathers_light && p.glints_material >= 0 && p.kernel == kernel &&
            materials[static_cast<std::size_t>(p.glints_material)].glints->colors == material.glints->colors;

@@ -22,7 +22,7 @@ struct PlannedEvaluator {
   bool asks_densities = false;  ///< a material multiplies lights with its density
   int width = 0, height = 0;
   Interpolation interpolation = Interpolation::bilinear;
-  std::string kernel;          ///< file and options
+  std::string kernel;          ///< file and options; several with commas between them
   std::size_t host_bytes = 0;  ///< of the surface
   std::size_t device_bytes = 0;
   std::vector<std::string> materials;  ///< that use it
