@@ -16,8 +16,7 @@
 #endif
 
 #include "footprint_slopes.h"
-#include "lobe.h"
-#include "lobe_bound.h"
+#include "lobe_sum.h"
 #include "types.h"
 #include "visible_area.h"
 #include "wave.h"
@@ -120,6 +119,16 @@ static inline void take_lobes(global const mica_patch_query* query, global const
   take_lobes(query, lobes, at, leaf, i, j, room_i, room_j, results)
 #include "walk_leaves.h"
 
+#if MICA_MASKING == 1
+// For the density alone, which is all that is left to do once the pyramid has said the areas.
+#define LEAF_WALK walk_dense_leaves
+#define LEAF_RESULTS wave_float
+#define LEAF_SURVIVORS(query, node, i, j, child_size, scratch) dense_lobes(&(query)->lobe, node, i, j, child_size, scratch)
+#define LEAF_TAKE(query, lobes, at, i, j, room_i, room_j, sum, scratch) \
+  sum_lobes(&(query)->lobe, lobes, at, i, j, room_i, room_j, sum)
+#include "walk_leaves.h"
+#endif
+
 // o_z - p.o_xy of the mean slope.
 static inline float facing(slope_lobe lobe, float o_x, float o_y, float o_z) {
   return o_z - fma(lobe.mean_x, o_x, lobe.mean_y * o_y);
@@ -165,7 +174,12 @@ kernel void beckmann_patches(global const mica_patch_query* restrict queries, in
       projected = light;
     }
   }
-  walk_leaves(query, grid, lobes, block_nodes, tile_nodes, &results, scratch);
+#if MICA_MASKING == 1
+  if (!results.all) {
+    walk_dense_leaves(query, grid, lobes, block_nodes, tile_nodes, &results.density, scratch);
+  } else
+#endif
+    walk_leaves(query, grid, lobes, block_nodes, tile_nodes, &results, scratch);
   global float* answer = answers + 4 * query->lobe.map.slot;
   answer[0] = query->lobe.map.scale * wave_sum(results.density, scratch);
   answer[1] = fma(query->weight, wave_sum(results.view, scratch), view);
