@@ -75,16 +75,17 @@ BeckmannBrdf::BeckmannBrdf(Device& device, const Surface& surface, const PatchBr
                                      device.upload(lobes_.block_nodes, "the map's bounds"),
                                      device.upload(lobes_.tile_nodes, "the map's bounds")};
   device_bytes_ = lobes_.bytes();
+  const WaveForm wave_form = settings.wave_form.value_or(device.wave_form());
   if (masking_ == Masking::geometric) {
     densities_.emplace(device, lobes_.grid, std::move(buffers), device_bytes_, "beckmanns",
-                       "-DMICA_COUNT_ELEMENTS=0", device.wave_form(), kBatchQueries);
+                       "-DMICA_COUNT_ELEMENTS=0", wave_form, kBatchQueries);
   } else {
     const SlopePyramid pyramid = build_slope_pyramid(lobes_, false);
     levels_ = pyramid.levels;
     device_bytes_ += pyramid.bytes();
     buffers.push_back(device.upload(pyramid.numbers, "the pyramid of slopes"));
     patches_.emplace(device, lobes_.grid, std::move(buffers), device_bytes_, "beckmann_patches",
-                     fmt::format("-DMICA_MASKING={}", masking_ == Masking::exact ? 2 : 1), device.wave_form(),
+                     fmt::format("-DMICA_MASKING={}", masking_ == Masking::exact ? 2 : 1), wave_form,
                      kBatchQueries, kAnswers);
   }
   build_seconds_ = watch_.seconds();
