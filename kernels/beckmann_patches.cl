@@ -52,7 +52,8 @@ static inline wave_int turn_away(global const mica_lobe_query* query, const priv
 
 static inline uint surviving_lobes(global const mica_patch_query* query, private leaf_results* results,
                                    global const short* node, int i, int j, int child_size, WAVE_SHARED int* scratch) {
-  const lobe_children c = load_children(&query->lobe, node, i, j, child_size);
+  lobe_children c;
+  load_children(&query->lobe, node, i, j, child_size, &c);
   const wave_int near = c.boxes.present & wave_mask(c.q_position <= query->lobe.map.cutoff);
   results->dense = wave_ballot(matter_to_density(&query->lobe, &c), scratch);
   results->turned = 0;
@@ -86,7 +87,8 @@ static inline wave_float lobe_areas(const private lobe_leaf* lobes, float roughn
 // @param child of the leaf, in its tile.
 static inline void take_lobes(global const mica_patch_query* query, global const short* leaves, int leaf, int child, int i,
                               int j, int room_i, int room_j, private leaf_results* results) {
-  lobe_leaf lobes = load_lobes(leaves + leaf * MICA_LOBE_LEAF, query->lobe.map.inverse_roughness);
+  lobe_leaf lobes;
+  load_lobes(leaves + leaf * MICA_LOBE_LEAF, query->lobe.map.inverse_roughness, &lobes);
   const wave_float q_position = lobe_positions(&query->lobe.map, i, j);
   const wave_int inside_map = wave_mask((WAVE_LANE & 3) < room_i) & wave_mask((WAVE_LANE >> 2) < room_j);
   const wave_float nothing = 0.0f;

@@ -15,14 +15,16 @@
 // Bits of the children of `node` that matter.
 static inline uint dense_lobes(global const mica_lobe_query* query, global const short* node, int i, int j,
                                int child_size, WAVE_SHARED int* scratch) {
-  const lobe_children children = load_children(query, node, i, j, child_size);
+  lobe_children children;
+  load_children(query, node, i, j, child_size, &children);
   return wave_ballot(matter_to_density(query, &children), scratch);
 }
 
 // Adds leaf number `leaf`, whose first element lies (i, j) elements from the mean.
 static inline void sum_lobes(global const mica_lobe_query* query, global const short* leaves, int leaf, int i, int j,
                              int room_i, int room_j, private wave_float* sum) {
-  const lobe_leaf lobes = load_lobes(leaves + leaf * MICA_LOBE_LEAF, query->map.inverse_roughness);
+  lobe_leaf lobes;
+  load_lobes(leaves + leaf * MICA_LOBE_LEAF, query->map.inverse_roughness, &lobes);
   const wave_float densities = lobe_densities(query, &lobes, lobe_positions(&query->map, i, j));
   const wave_int inside_map = wave_mask((WAVE_LANE & 3) < room_i) & wave_mask((WAVE_LANE >> 2) < room_j);
   const wave_float nothing = 0.0f, one = 1.0f;
