@@ -12,6 +12,7 @@ namespace mica {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
+constexpr double kUniformVariance = 0.8 * 0.8;  // of a footprint that sees all of the map alike, periods^2
 constexpr double kMinRoughness = 1e-5, kMaxRoughness = 1;
 constexpr double kMinSigmaTexels = 1e-3, kMaxSigmaTexels = 1e6;
 
@@ -59,7 +60,7 @@ void wrap_texel(double coordinate, int size, double shift, std::int32_t* whole, 
 /// the mean. One that is long only one way, and still sees waves across it, becomes as short as keeps just
 /// those: 0.8 periods of the lattice line along it.
 Footprint without_needless_periods(const Footprint& footprint) {
-  constexpr double uniform_variance = 0.8 * 0.8;
+  constexpr double uniform_variance = kUniformVariance;
   const Eigen::Matrix2d waves = reduced_waves(footprint.cov_uv);
   const Eigen::Matrix2d form = waves.transpose() * footprint.cov_uv * waves;
   if (form(1, 1) <= uniform_variance) return footprint;
@@ -140,18 +141,41 @@ device_types::mica_map_query to_map_query(const Query& query, const device_types
   return result;
 }
 
+device_types::mica_map_query to_triangle_query(const Query& query, const device_types::mica_map_grid& grid,
+                                               Interpolation interpolation, double cutoff) {
+  device_types::mica_map_query result = to_map_query(query, grid, interpolation, cutoff);
+  const Eigen::Matrix2d& cov = query.footprint.cov_uv;
+  const Eigen::Vector2d shortest = reduced_waves(cov).col(0);
+  if (shortest.dot(cov * shortest) <= kUniformVariance) return result;
+  // From the first texel to the last, under a Gaussian so wide that it is a constant.
+  constexpr double sigma_periods = 300;  // at the corners the weight is 3e-6 less
+  const double width = grid.width, height = grid.height;
+  result.mean_i = result.mean_j = 0;
+  result.mean_x = static_cast<float>(width / 2), result.mean_y = static_cast<float>(height / 2);
+  result.extent_x = result.mean_x - 0.25f, result.extent_y = result.mean_y - 0.25f;
+  result.whiten_1x = static_cast<float>(1 / (sigma_periods * width));
+  result.whiten_2y = static_cast<float>(1 / (sigma_periods * height));
+  result.whiten_1y = result.whiten_2x = 0;
+  result.scale = static_cast<float>(1 / (2 * kPi * width * height * query.roughness * query.roughness));
+  return result;
+}
+
 double sum_of_weights(const Eigen::Matrix2d& cov_spacings, const Eigen::Vector2d& mean_spacings) {
-  constexpr int orders = 2;  // the third one's terms are below exp(-2 pi^2 9 k) = 1e-14
-  double sum = 0;
-  for (int a = -orders; a <= orders; ++a) {
-    for (int b = -orders; b <= orders; ++b) {
-      const Eigen::Vector2d wave(a, b);
-      const double exponent = 2 * kPi * kPi * wave.dot(cov_spacings * wave);
-      if (exponent < 40)
-        sum += std::exp(-exponent) * std::cos(2 * kPi * wave.dot(Eigen::Vector2d(0.5, 0.5) - mean_spacings));
+  constexpr int orders = 2;      // the third one's terms are below exp(-2 pi^2 9 k) = 1e-14
+  constexpr double nothing = 20;  // exp(-20) = 2e-9 of the sum
+  const double a = cov_spacings(0, 0), b = cov_spacings(0, 1), c = cov_spacings(1, 1);
+  const double least_variance = 0.5 * (a + c) - std::hypot(0.5 * (a - c), b);
+  if (2 * kPi * kPi * least_variance > nothing) return 1;  // of every wave: |(x, y)| >= 1
+  const double phase_x = 2 * kPi * (0.5 - mean_spacings.x()), phase_y = 2 * kPi * (0.5 - mean_spacings.y());
+  // Waves come in pairs of equal terms, (x, y) and (-x, -y).
+  double half_sum = 0;
+  for (int x = 0; x <= orders; ++x) {
+    for (int y = x == 0 ? 1 : -orders; y <= orders; ++y) {
+      const double exponent = 2 * kPi * kPi * (a * x * x + 2 * b * x * y + c * y * y);
+      if (exponent < nothing) half_sum += std::exp(-exponent) * std::cos(x * phase_x + y * phase_y);
     }
   }
-  return sum;
+  return 1 + 2 * half_sum;
 }
 
 device_types::mica_mixture_query to_mixture_query(const Query& query, const device_types::mica_map_grid& grid,
