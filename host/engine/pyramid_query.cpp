@@ -42,25 +42,26 @@ std::optional<PyramidChoice> choose_level(const Query& query, int map_width, int
 }
 
 device_types::mica_pyramid_query to_pyramid_query(const Query& query,
-                                                  const device_types::mica_pyramid_level& level,
+                                                  const PyramidShape& level,
                                                   Interpolation interpolation, double cutoff, bool uniform) {
   device_types::mica_pyramid_query result{};
-  const device_types::mica_map_grid grid = {level.width, level.height, 0, 0};
-  result.map = to_map_query(query, grid, interpolation, cutoff);
+  const int width = level.grid.width, height = level.grid.height;
+  result.group_size = level.group_size;
+  result.map = to_map_query(query, level.grid, interpolation, cutoff);
   if (uniform) {
     // All of the map at once, with the same weight: a footprint so wide that every position counts alike.
-    const double sigma = 1e4 * std::max(level.width, level.height);
+    const double sigma = 1e4 * std::max(width, height);
     const auto variance = static_cast<float>(sigma * sigma);
     result.cov_xx = result.cov_yy = variance;
     result.map.whiten_1x = result.map.whiten_2y = static_cast<float>(1 / sigma);
     result.map.whiten_1y = result.map.whiten_2x = 0;
     result.map.extent_x = result.map.extent_y = 0;
     result.map.scale = static_cast<float>(sigma * sigma / (2 * kPi * query.roughness * query.roughness) /
-                                          (static_cast<double>(level.width) * level.height));
+                                          (static_cast<double>(width) * height));
     return result;
   }
   const FootprintAxes axes =
-      footprint_axes(without_needless_periods(query.footprint), level.width, level.height);
+      footprint_axes(without_needless_periods(query.footprint), width, height);
   const double variance_1 = axes.sigma_major_texels * axes.sigma_major_texels,
                variance_2 = axes.sigma_minor_texels * axes.sigma_minor_texels;
   const Eigen::Matrix2d cov =

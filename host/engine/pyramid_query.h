@@ -4,6 +4,7 @@
 #include <tuple>
 
 #include "host/base/query.h"
+#include "host/build/moment_pyramid.h"
 #include "host/surface/description.h"
 #include "kernels/pyramid_types.h"
 
@@ -37,7 +38,7 @@ std::optional<PyramidChoice> choose_level(const Query& query, int map_width, int
 
 /// The query in the kernel's form. @param uniform of the choice.
 device_types::mica_pyramid_query to_pyramid_query(const Query& query,
-                                                  const device_types::mica_pyramid_level& level,
+                                                  const PyramidShape& level,
                                                   Interpolation interpolation, double cutoff, bool uniform);
 
 }  // namespace mica
