@@ -73,7 +73,8 @@ PyramidLevel flatten(const Surface& surface, double cell_width, BlockGrid* grid)
   const auto groups = [](int blocks) { return (blocks + MICA_GROUP_BLOCKS - 1) / MICA_GROUP_BLOCKS; };
   level.shape.grid = {surface.width(), surface.height(), groups(grid->columns), groups(grid->rows)};
   level.shape.group_size = grid->block * MICA_GROUP_BLOCKS;
-  std::vector<ElementTree> trees(static_cast<std::size_t>(level.shape.grid.blocks_x) * level.shape.grid.blocks_y);
+  std::vector<ElementTree> trees(static_cast<std::size_t>(level.shape.grid.blocks_x) *
+                                 level.shape.grid.blocks_y);
   tbb::parallel_for(std::size_t{0}, trees.size(), [&](std::size_t n) {
     const int column = static_cast<int>(n % level.shape.grid.blocks_x) * MICA_GROUP_BLOCKS;
     const int row = static_cast<int>(n / level.shape.grid.blocks_x) * MICA_GROUP_BLOCKS;

@@ -10,9 +10,8 @@ namespace mica {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kFirstRoughness = 0.02;  // whose cells are not narrower than asked for
-constexpr double kLargestAspect = 128;    // single precision keeps 0.1% of such a footprint's determinant
-constexpr double kSlack = 1e-9;           // of ratios that are meant to be equal
+constexpr double kFirstRoughness = 0.02;        // whose cells are not narrower than asked for
+constexpr double kSlack = 1e-9;                 // of ratios that are meant to be equal
 constexpr double kUniformVariance = 0.8 * 0.8;  // see without_needless_periods
 
 }  // namespace
@@ -41,8 +40,7 @@ std::optional<PyramidChoice> choose_level(const Query& query, int map_width, int
   return choice;
 }
 
-device_types::mica_pyramid_query to_pyramid_query(const Query& query,
-                                                  const PyramidShape& level,
+device_types::mica_pyramid_query to_pyramid_query(const Query& query, const PyramidShape& level,
                                                   Interpolation interpolation, double cutoff, bool uniform) {
   device_types::mica_pyramid_query result{};
   const int width = level.grid.width, height = level.grid.height;
@@ -60,8 +58,7 @@ device_types::mica_pyramid_query to_pyramid_query(const Query& query,
                                           (static_cast<double>(width) * height));
     return result;
   }
-  const FootprintAxes axes =
-      footprint_axes(without_needless_periods(query.footprint), width, height);
+  const FootprintAxes axes = footprint_axes(without_needless_periods(query.footprint), width, height);
   const double variance_1 = axes.sigma_major_texels * axes.sigma_major_texels,
                variance_2 = axes.sigma_minor_texels * axes.sigma_minor_texels;
   const Eigen::Matrix2d cov =

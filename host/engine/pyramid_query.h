@@ -29,6 +29,9 @@ struct PyramidChoice {
   }
 };
 
+/// Single precision keeps 0.1% of the determinant of a footprint with this ratio of its axes.
+constexpr double kLargestAspect = 128;
+
 /// Cells come in widths half an octave apart: those of roughness 0.02 and sqrt(2)^n times as much.
 double cell_width(int cell_class, const PyramidPrecision& precision);
 
@@ -37,8 +40,7 @@ std::optional<PyramidChoice> choose_level(const Query& query, int map_width, int
                                           const PyramidPrecision& precision);
 
 /// The query in the kernel's form. @param uniform of the choice.
-device_types::mica_pyramid_query to_pyramid_query(const Query& query,
-                                                  const PyramidShape& level,
+device_types::mica_pyramid_query to_pyramid_query(const Query& query, const PyramidShape& level,
                                                   Interpolation interpolation, double cutoff, bool uniform);
 
 }  // namespace mica
