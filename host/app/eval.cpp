@@ -107,9 +107,15 @@ QueryTable read_queries(const EvalOptions& options) {
 
 int run_patches(const EvalOptions& options) {
   if (options.tolerance) throw UsageError("--tolerance is for --quantity ndf");
-  return evaluate_patches({options.map, options.quantity, options.ndf, options.queries, options.output,
-                           options.json, options.masking, options.part, options.roughness, options.grid.seed,
-                           options.device, options.elements, options.compensation, options.energy});
+  PatchEvaluation patches = {options.map,          options.quantity,  options.ndf,     options.queries,
+                             options.output,       options.json,      options.masking, options.part,
+                             options.roughness,    options.grid.seed, options.device,  options.elements,
+                             options.compensation, options.energy};
+  if (options.ndf == "grid") {
+    patches.glints = to_glints_description(options.grid);
+    patches.roughness = options.grid.microroughness;
+  }
+  return evaluate_patches(patches);
 }
 
 int run(const EvalOptions& options) {

@@ -15,6 +15,7 @@
 #include "host/base/error.h"
 #include "host/base/stopwatch.h"
 #include "host/engine/cavity_brdf.h"
+#include "host/engine/grid_brdf.h"
 #include "host/engine/make_patch_brdf.h"
 #include "host/image/image.h"
 
@@ -103,25 +104,61 @@ const std::vector<std::string>& patch_quantities() {
   return names;
 }
 
+namespace {
+
+/// What is asked: a map, which has to outlive its BRDF, or glints without one.
+struct Patch {
+  std::optional<Surface> surface;
+  nlohmann::json description;
+
+  std::string problem(const ViewQuery& query) const {
+    if (surface) return view_problem(query, surface->width(), surface->height());
+    return grid_query_problem({query.footprint, Eigen::Vector2d::Zero(), query.roughness});
+  }
+};
+
+Patch load_patch(const PatchEvaluation& options) {
+  if (options.glints)
+    return {std::nullopt,
+            {{"alpha", {options.glints->alpha.x(), options.glints->alpha.y()}},
+             {"density", options.glints->density},
+             {"stretch", options.glints->stretch}}};
+  SurfaceReport report;
+  Surface surface = load_map(options.map, &report);
+  const nlohmann::json description = {
+      {"file", options.map.path},   {"width", surface.width()},
+      {"height", surface.height()}, {"interpolation", options.map.interpolation},
+      {"notes", report.notes},      {"warnings", report.warnings}};
+  return {std::move(surface), description};
+}
+
+std::unique_ptr<PatchBrdf> make_brdf(const PatchEvaluation& options, const Patch& patch, Device& device) {
+  if (options.glints) return std::make_unique<GridBrdf>(device, *options.glints);
+  return make_patch_brdf(options.ndf, device, *patch.surface, to_settings(options));
+}
+
+}  // namespace
+
 int evaluate_patches(const PatchEvaluation& options) {
-  const std::vector<std::string>& names = patch_brdf_names();
+  std::vector<std::string> names = patch_brdf_names();
+  names.emplace_back("grid");
   if (std::find(names.begin(), names.end(), options.ndf) == names.end())
     throw UsageError(fmt::format("--quantity {}: {} has no BRDF of its own; available: {}", options.quantity,
                                  options.ndf, fmt::join(names, ", ")));
-  if (options.map.path.empty()) throw UsageError(fmt::format("--ndf {} needs a --map", options.ndf));
+  if (!options.glints && options.map.path.empty())
+    throw UsageError(fmt::format("--ndf {} needs a --map", options.ndf));
   check_extension(options.output, {".npy"});
   prepare_output(options.output);
   if (!options.json.empty()) prepare_output(options.json);
 
   const Stopwatch loading;
   const PatchTable table(options.queries, to_quantity(options.quantity), options.roughness);
-  SurfaceReport report;
-  const Surface surface = load_map(options.map, &report);
-  table.check(surface.width(), surface.height());
+  const Patch patch = load_patch(options);
+  table.check([&](const ViewQuery& query) { return patch.problem(query); });
   const double load_seconds = loading.seconds();
   const Stopwatch building;
   Device device(options.device);
-  const std::unique_ptr<PatchBrdf> brdf = make_patch_brdf(options.ndf, device, surface, to_settings(options));
+  const std::unique_ptr<PatchBrdf> brdf = make_brdf(options, patch, device);
   const double build_seconds = building.seconds();
   const Stopwatch evaluating;
   const Answers answers = answer_all(options, table, brdf.get());
@@ -140,13 +177,7 @@ int evaluate_patches(const PatchEvaluation& options) {
               {"energy", options.energy},
               {"part", options.part},
               {"seed", options.seed},
-              {"map",
-               {{"file", options.map.path},
-                {"width", surface.width()},
-                {"height", surface.height()},
-                {"interpolation", options.map.interpolation},
-                {"notes", report.notes},
-                {"warnings", report.warnings}}},
+              {options.glints ? "glints" : "map", patch.description},
               {"device", describe_device(device.info())},
               {"device_bytes", brdf->device_bytes()},
               {"seconds",

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "host/app/map_options.h"
+#include "host/scene/glints_description.h"
 
 namespace mica::app {
 
@@ -18,6 +19,7 @@ struct PatchEvaluation {
   std::uint64_t seed = 1;
   int device = 0, elements = 1;
   std::string compensation = "diffuse", energy = "exact";
+  std::optional<GlintsDescription> glints = {};  ///< of `grid`, which needs no map
 };
 
 /// "brdf", "energy" and "sample".

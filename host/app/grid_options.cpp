@@ -40,6 +40,11 @@ void add_grid_options(CLI::App* command, GridOptions* options) {
       ->type_name("N")
       ->capture_default_str()
       ->group(group);
+  command->add_option("--glint-masking", options->masking, "Of the BRDF: smith or cavity")
+      ->type_name("NAME")
+      ->check(CLI::IsMember(std::vector<std::string>{"smith", "cavity"}))
+      ->capture_default_str()
+      ->group(group);
 }
 
 GlintGrid to_glint_grid(const GridOptions& options) {
@@ -53,6 +58,18 @@ GlintGrid to_glint_grid(const GridOptions& options) {
   const std::string problem = glint_grid_problem(grid);
   if (!problem.empty()) throw UsageError("glints: " + problem);
   return grid;
+}
+
+GlintsDescription to_glints_description(const GridOptions& options) {
+  const GlintGrid grid = to_glint_grid(options);
+  GlintsDescription glints;
+  glints.distribution = grid.distribution;
+  glints.alpha = {grid.alpha_x, grid.alpha_y};
+  glints.density = grid.density;
+  glints.stretch = grid.stretch;
+  glints.seed = grid.seed;
+  if (options.masking == "cavity") glints.masking = GlintsDescription::Masking::cavity;
+  return glints;
 }
 
 }  // namespace mica::app

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "host/engine/grid_query.h"
+#include "host/scene/glints_description.h"
 
 namespace mica::app {
 
@@ -16,11 +17,13 @@ struct GridOptions {
   double density = 1e6, stretch = 1;
   std::optional<double> microroughness;
   std::uint32_t seed = 1;
+  std::string masking = "smith";
 };
 
 void add_grid_options(CLI::App* command, GridOptions* options);
 
 /// Throws UsageError for values out of range.
 GlintGrid to_glint_grid(const GridOptions& options);
+GlintsDescription to_glints_description(const GridOptions& options);
 
 }  // namespace mica::app

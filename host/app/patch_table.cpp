@@ -4,7 +4,6 @@
 
 #include "host/app/query_table.h"
 #include "host/base/error.h"
-#include "host/engine/make_patch_brdf.h"
 #include "host/surface/random.h"
 
 namespace mica::app {
@@ -60,14 +59,13 @@ SampleQuery PatchTable::sample(std::size_t row, std::uint64_t seed) const {
   return {view(row), synthesis::random_bits(seed, 0, row)};
 }
 
-std::string PatchTable::problem(std::size_t row, int map_width, int map_height) const {
-  std::string text = direction_problem("o", direction(row, kView));
-  if (text.empty() && quantity_ == PatchQuantity::brdf) text = direction_problem("i", direction(row, kLight));
-  return text.empty() ? view_problem(view(row), map_width, map_height) : text;
-}
-
-void PatchTable::check(int map_width, int map_height) const {
-  check_rows(path_, size(), [&](std::size_t row) { return problem(row, map_width, map_height); });
+void PatchTable::check(const std::function<std::string(const ViewQuery&)>& view_problem) const {
+  check_rows(path_, size(), [&](std::size_t row) {
+    std::string text = direction_problem("o", direction(row, kView));
+    if (text.empty() && quantity_ == PatchQuantity::brdf)
+      text = direction_problem("i", direction(row, kLight));
+    return text.empty() ? view_problem(view(row)) : text;
+  });
 }
 
 }  // namespace mica::app

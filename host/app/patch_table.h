@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -25,8 +26,9 @@ class PatchTable {
   PatchTable(const std::string& path, PatchQuantity quantity, std::optional<double> roughness);
 
   std::size_t size() const { return table_.rows; }
-  /// Throws UsageError naming the rows that cannot be answered, see `NamedRows`.
-  void check(int map_width, int map_height) const;
+  /// @param view_problem why a view cannot be answered, or empty. Throws UsageError naming the rows that
+  /// cannot be, see `NamedRows`.
+  void check(const std::function<std::string(const ViewQuery&)>& view_problem) const;
 
   BrdfQuery brdf(std::size_t row) const;
   ViewQuery view(std::size_t row) const;
@@ -35,7 +37,6 @@ class PatchTable {
 
  private:
   Eigen::Vector3d direction(std::size_t row, std::size_t column) const;
-  std::string problem(std::size_t row, int map_width, int map_height) const;
 
   std::string path_;
   PatchQuantity quantity_;

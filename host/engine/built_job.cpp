@@ -8,6 +8,7 @@
 #include "host/base/stopwatch.h"
 #include "host/engine/auto_evaluator.h"
 #include "host/engine/glint_plan.h"
+#include "host/engine/grid_brdf.h"
 #include "host/engine/make_evaluator.h"
 #include "host/engine/make_patch_brdf.h"
 #include "host/engine/ndf_brdf.h"
@@ -57,6 +58,8 @@ void BuiltJob::build_evaluator(std::size_t n) {
 
 std::unique_ptr<PatchBrdf> BuiltJob::make_brdf(std::size_t n) const {
   const PlannedEvaluator& planned = plan_.evaluators[n];
+  if (planned.glints_material >= 0)
+    return std::make_unique<GridBrdf>(device_, *job_.scene.materials[planned.glints_material].glints);
   if (planned.patch_brdf)
     return make_patch_brdf(planned.evaluator, device_, *surfaces_[n],
                            {planned.masking, planned.elements, planned.compensation, planned.energy});

@@ -10,6 +10,8 @@
 namespace mica {
 namespace {
 
+constexpr std::uint64_t kFrames = ~std::uint64_t{0};  // a stream that no pixel has
+
 /// Asks one BRDF about all draws of its points, and lets it draw. @return how many questions that were.
 std::size_t ask(PatchBrdf& brdf, int samples, bool draws, const std::vector<GatheredLight*>& points) {
   std::vector<BrdfQuery> queries;
@@ -34,17 +36,24 @@ std::size_t ask(PatchBrdf& brdf, int samples, bool draws, const std::vector<Gath
   return queries.size() + sample_queries.size();
 }
 
+/// What the random numbers of a frame are a hash of; at frame 0, where pictures without frames are, the seed.
+std::uint64_t seed_of(const BuiltJob& built) {
+  const auto frame = static_cast<std::uint64_t>(built.frame());
+  return frame == 0 ? built.job().seed : synthesis::random_bits(built.job().seed, kFrames, frame);
+}
+
 /// Gathers at points [first, last), and adds what they gather to `radiance`, a pixel.
 std::size_t gather(const BuiltJob& built, const TracedRows& rows, std::size_t first, std::size_t last,
                    std::vector<Color>* radiance) {
   const ImageSettings& image = built.job().image;
   const GatheringContext context{built.scene(), image, built.plan().techniques};
+  const std::uint64_t seed = seed_of(built);
   std::vector<GatheredLight> points;
   points.reserve(last - first);
   for (std::size_t n = first; n < last; ++n) {
     const LitPoint& point = rows.points[n];
     const std::uint64_t pixel = static_cast<std::uint64_t>(rows.first_row) * image.width + point.pixel;
-    points.emplace_back(context, point, synthesis::random_bits(built.job().seed, pixel, point.subpixel));
+    points.emplace_back(context, point, synthesis::random_bits(seed, pixel, point.subpixel));
   }
   tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t n) { points[n].draw(); });
 

@@ -13,7 +13,7 @@ namespace mica {
 /// by where the material reflects it to; both estimate the same integral, and each is weighted by its share
 /// of the density with which the two together draw its direction: the balance heuristic of E. Veach, "Robust
 /// Monte Carlo Methods for Light Transport Simulation" (1997), sec. 9.2.2. The diffuse lobe has a pair of its
-/// own. The random numbers are a hash of the job's seed, the pixel, the subpixel and the sample.
+/// own. The random numbers are a hash of the job's seed, the frame, the pixel, the subpixel and the sample.
 ///
 /// @return how many questions the materials' BRDFs answered.
 std::size_t gather_light(const BuiltJob& built, TracedRows* rows);

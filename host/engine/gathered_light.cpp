@@ -22,6 +22,13 @@ enum Stream : std::uint64_t {
   kBrdfPath
 };
 
+Color mean_color(const MaterialDescription& material) {
+  if (!material.glints || material.glints->colors.empty()) return Color::Ones();
+  Color sum = Color::Zero();
+  for (const Eigen::Vector3d& color : material.glints->colors) sum += color;
+  return sum / static_cast<double>(material.glints->colors.size());
+}
+
 }  // namespace
 
 GatheredLight::GatheredLight(const GatheringContext& context, const LitPoint& point, std::uint64_t key)
@@ -32,7 +39,8 @@ GatheredLight::GatheredLight(const GatheringContext& context, const LitPoint& po
       view_(point.frame.to_local(point.to_eye)),
       crossing_(context.scene.coat(point.material), view_),
       smooth_(material_, context.scene.coat(point.material), context.scene.masking_alpha(point.material),
-              SmoothMaterial::Lobes::without_normals) {}
+              SmoothMaterial::Lobes::without_normals),
+      tint_(mean_color(material_)) {}
 
 bool GatheredLight::faces(const Eigen::Vector3d& world) const {
   return world.dot(point_.frame.z) >= min_cosine && world.dot(point_.frame.face_normal) >= min_cosine;
@@ -106,7 +114,8 @@ void GatheredLight::add(const LightDraw& draw, const BrdfValue& value) {
   const BounceFresnel fresnel(material_.specular, crossing_.view_below(), crossing_.below(draw.local));
   const Color reflected = value.single * fresnel.single + value.multiple * fresnel.multiple;
   const double pdf = uses_brdf() ? value.pdf * crossing_.density_scale(draw.local) : 0;
-  sum_ += reflected.cwiseProduct(draw.radiance) * (crossing_.value_scale(draw.local) / (draw.pdf + pdf));
+  sum_ += tint_.cwiseProduct(reflected).cwiseProduct(draw.radiance) *
+          (crossing_.value_scale(draw.local) / (draw.pdf + pdf));
 }
 
 void GatheredLight::add(const BrdfSample& sample, std::size_t n) {
@@ -119,7 +128,7 @@ void GatheredLight::add(const BrdfSample& sample, std::size_t n) {
   if (radiance.isZero(0)) return;
   const BounceFresnel fresnel(material_.specular, crossing_.view_below(), below);
   const Color weight = sample.weight_single * fresnel.single + sample.weight_multiple * fresnel.multiple;
-  sum_ += weight.cwiseProduct(radiance) * (crossing_.value_scale(local) / density_scale);
+  sum_ += tint_.cwiseProduct(weight).cwiseProduct(radiance) * (crossing_.value_scale(local) / density_scale);
 }
 
 }  // namespace mica

@@ -68,6 +68,7 @@ class GatheredLight {
   Eigen::Vector3d view_;  // in the point's frame
   CoatCrossing crossing_;
   SmoothMaterial smooth_;
+  Color tint_;  // mean colour of a material's glints
   std::vector<LightDraw> draws_;
   Color sum_ = Color::Zero();
 };

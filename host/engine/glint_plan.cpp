@@ -21,17 +21,33 @@ GridFeatures glint_features(const GlintsDescription& glints) {
   return features;
 }
 
+namespace {
+
+/// The BRDF of glints, which light from all around needs, knows one process and no place on the shape.
+void check_gathers(const MaterialDescription& material) {
+  const GlintsDescription& glints = *material.glints;
+  if (glints.mapping == GlintsDescription::Mapping::triplanar)
+    throw UsageError(fmt::format(
+        "material.{}.mapping: found \"triplanar\" in light from all around; expected \"uv\" there",
+        material.name));
+  const GlintTextures& t = glints.textures;
+  for (const std::string* file : {&t.density, &t.alpha, &t.microroughness, &t.stretch, &t.color})
+    if (!file->empty())
+      throw UsageError(fmt::format(
+          "material.{}.textures: found \"{}\" in light from all around; expected no textures there",
+          material.name, *file));
+}
+
+}  // namespace
+
 int plan_glints(const std::vector<MaterialDescription>& materials, const MaterialDescription& material,
                 Plan* plan) {
-  if (plan->gathers_light)
-    throw UsageError(fmt::format(
-        "material.{}.ndf: found \"grid\" in light from all around; expected an evaluator on a surface there",
-        material.name));
+  if (plan->gathers_light) check_gathers(material);
   std::vector<PlannedEvaluator>* planned = &plan->evaluators;
   const std::string kernel =
       "grid.cl " + grid_kernel_options(material.glints->distribution, glint_features(*material.glints));
   auto found = std::find_if(planned->begin(), planned->end(), [&](const PlannedEvaluator& p) {
-    return p.glints_material >= 0 && p.kernel == kernel &&
+    return !plan->gathers_light && p.glints_material >= 0 && p.kernel == kernel &&
            materials[static_cast<std::size_t>(p.glints_material)].glints->colors == material.glints->colors;
   });
   if (found == planned->end()) {

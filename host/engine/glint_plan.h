@@ -9,8 +9,9 @@ namespace mica {
 GridFeatures glint_features(const GlintsDescription& glints);
 
 /// Index of the evaluator of one of `materials`, which is of glints; planned now if it is the first to need
-/// it. It has no surface and no memory, only a kernel; materials with the same kernel and colours share it.
-/// Throws UsageError where light is gathered from all around: glints have no BRDF to draw from.
+/// it. It has no surface and no memory, only a kernel; materials with the same kernel and colours share it,
+/// unless light from all around needs a BRDF of each. Throws UsageError for triplanar or textured glints in
+/// such light.
 int plan_glints(const std::vector<MaterialDescription>& materials, const MaterialDescription& material,
                 Plan* plan);
 

@@ -35,7 +35,8 @@ std::function<Eigen::Vector3d(std::uint64_t)> cosines(double low, double high, s
 std::vector<Surface> surfaces() {
   std::vector<Eigen::Vector2d> rim;
   for (int n = 0; n < 64 * 64; ++n) {
-    const double angle = 2 * kPi * (n % 64) / 64 + 0.4 * std::sin(2 * kPi * (n / 64) / 64.0);
+    const int step = n % 64, turn = n / 64;
+    const double angle = 2 * kPi * step / 64 + 0.4 * std::sin(2 * kPi * turn / 64.0);
     rim.emplace_back(0.98 * std::cos(angle), 0.98 * std::sin(angle));
   }
   return {make_surface({"noise", SpectrumSurface{64, 0.3, 8, 3}, Interpolation::bilinear}, nullptr),
@@ -137,12 +138,13 @@ const std::vector<HardDirections>& hard_directions() {
 std::vector<HardResult> run_hard_directions(const HardDirections& directions, Device& device, int queries) {
   std::vector<HardResult> results;
   for (const std::string& name : patch_brdf_names()) {
-    for (std::size_t masking = 0; masking < masking_names().size(); ++masking) {
+    const std::size_t maskings = name == "beckmanns" ? masking_names().size() : 1;  // others have but one
+    for (std::size_t masking = 0; masking < maskings; ++masking) {
       PatchBrdfSettings settings;
       settings.masking = static_cast<Masking>(masking);
       HardResult result;
       result.hard_case = directions.name;
-      result.evaluator = fmt::format("{}, {}", name, masking_names()[masking]);
+      result.evaluator = maskings == 1 ? name : fmt::format("{}, {}", name, masking_names()[masking]);
       for (const Surface& surface : surfaces()) {
         try {
           ask(directions, surface, settings.masking, make_patch_brdf(name, device, surface, settings).get(),

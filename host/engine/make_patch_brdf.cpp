@@ -7,6 +7,7 @@
 #include "host/engine/beckmann_brdf.h"
 #include "host/engine/cavity_brdf.h"
 #include "host/engine/map_query.h"
+#include "host/engine/normal_map_brdf.h"
 
 namespace mica {
 
@@ -16,7 +17,7 @@ const std::vector<std::string>& masking_names() {
 }
 
 const std::vector<std::string>& patch_brdf_names() {
-  static const std::vector<std::string> names = {"beckmanns", "cavities"};
+  static const std::vector<std::string> names = {"beckmanns", "cavities", "normalmap"};
   return names;
 }
 
@@ -30,6 +31,7 @@ std::unique_ptr<PatchBrdf> make_patch_brdf(const std::string& name, Device& devi
     cavities.per_texel = settings.elements;
     return std::make_unique<CavityBrdf>(device, surface, cavities);
   }
+  if (name == "normalmap") return std::make_unique<NormalMapBrdf>(surface);
   throw UsageError(
       fmt::format("\"{}\" has no BRDF of its own; available: {}", name, fmt::join(patch_brdf_names(), ", ")));
 }

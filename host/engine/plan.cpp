@@ -54,6 +54,9 @@ void plan_structure(PlannedEvaluator* planned) {
     if (planned->energy == LostEnergy::table) planned->host_bytes += footprint_energy_bytes(width, height);
     planned->kernel += fmt::format(" -DMICA_INTERPOLATION={} -DMICA_SEEDS={}",
                                    static_cast<int>(planned->interpolation), elements);
+  } else if (planned->evaluator == "normalmap") {
+    planned->host_bytes *= 2;  // keeps the map, and needs no device
+    planned->kernel = "none";
   } else if (planned->evaluator == "pyramid" || planned->evaluator == "auto") {
     planned->device_bytes =
         map_structure_bytes(width, height) + 4 * PyramidSettings{}.level_bytes / 3;  // at most

@@ -52,8 +52,8 @@ CoatDescription read_coat(TableReader& table) {
 }
 
 void read_evaluator(TableReader& material, std::string& ndf) {
-  const std::vector<std::string_view> available = {"triangles", "gaussians", "beckmanns", "smooth",
-                                                   "cavities",  "pyramid",   "auto",      "grid"};
+  const std::vector<std::string_view> available = {
+      "triangles", "gaussians", "beckmanns", "smooth", "cavities", "pyramid", "auto", "grid", "normalmap"};
   const std::vector<std::string_view> planned = {"reference"};
   std::string word = ndf;
   material.read("ndf", word);
@@ -71,7 +71,8 @@ void read_evaluator(TableReader& material, std::string& ndf) {
 /// Mixtures have no lobes for Catmull-Rom patches.
 void refuse_bicubic(TableReader& table, const MaterialDescription& material,
                     const std::vector<SurfaceDescription>& surfaces) {
-  if (material.ndf == "triangles" || material.ndf == "pyramid" || material.ndf == "auto") return;
+  for (const char* const any : {"triangles", "pyramid", "auto", "normalmap"})
+    if (material.ndf == any) return;
   for (const SurfaceDescription& surface : surfaces)
     if (surface.name == material.surface && surface.interpolation == Interpolation::bicubic)
       table.report("ndf",
@@ -112,7 +113,7 @@ std::vector<MaterialDescription> read_materials(TableReader& job,
       refuse_bicubic(table, material, surfaces);
       if (material.ndf == "cavities") {
         read_cavities(table, material);
-      } else {
+      } else if (material.ndf != "normalmap") {
         table.read("masking", material.masking, maskings);
         table.read("elements", material.elements, closed(1, 4));
       }
@@ -120,8 +121,9 @@ std::vector<MaterialDescription> read_materials(TableReader& job,
     table.read_table("specular", [&](TableReader& specular) { material.specular = read_specular(specular); });
     table.read("diffuse", material.diffuse, reflectance);
     table.read_table("coat", [&](TableReader& coat) { material.coat = read_coat(coat); });
-    if (material.coat && material.ndf == "cavities")
-      table.report("coat", "found one on cavities; expected none, or an ndf with a density");
+    if (material.coat && (material.ndf == "cavities" || material.ndf == "normalmap"))
+      table.report("coat",
+                   fmt::format("found one on {}; expected none, or an ndf with a density", material.ndf));
     materials.push_back(std::move(material));
   });
   return materials;

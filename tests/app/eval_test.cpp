@@ -154,6 +154,34 @@ TEST_F(Eval, GlintsNeedNoMap) {
   EXPECT_EQ(nlohmann::json::parse(bytes(path("D.json")))["glints"]["density"], 1e5);
 }
 
+TEST_F(Eval, GlintsAreDrawnAndWeighed) {
+  const std::string common = "eval --ndf grid --alpha 0.3 --microroughness 0.05 --density 1e6 --queries ";
+  Rows views;
+  for (int n = 0; n < 200; ++n) views.push_back({0.01 * n, 0.3, 1e-6, 0, 1e-6, 0.3, 0, 0.9});
+  write("views.npy", npy_of(views));
+  Outcome outcome = mica(common + "views.npy --quantity sample -o draws.npy");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const std::vector<float> draws = densities("draws.npy", 5);  // ix iy iz pdf weight
+  ASSERT_EQ(draws.size(), 1000u);
+  Rows lit;
+  std::vector<float> expected;
+  for (std::size_t n = 0; n < views.size(); ++n) {
+    if (!(draws[5 * n + 3] > 0)) continue;
+    lit.push_back(views[n]);
+    for (std::size_t axis = 0; axis < 3; ++axis) lit.back().push_back(draws[5 * n + axis]);
+    expected.push_back(draws[5 * n + 3] * draws[5 * n + 4]);
+  }
+  ASSERT_GT(lit.size(), 100u);
+  write("lit.npy", npy_of(lit));
+  outcome = mica(common + "lit.npy --quantity brdf -o brdf.npy");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const std::vector<float> values = densities("brdf.npy");
+  ASSERT_EQ(values.size(), expected.size());
+  // The direction was rounded on the way, which moves it within a lobe.
+  for (std::size_t n = 0; n < values.size(); ++n)
+    EXPECT_NEAR(values[n], expected[n], 1e-3 * expected[n] + 1e-4);
+}
+
 TEST_F(Eval, SaysWhatItDid) {
   write("q.npy", npy_of(query_rows(10)));
   eval("q.npy", "--ndf triangles --roughness 0.01 --tolerance 1e-3 --json D.json");

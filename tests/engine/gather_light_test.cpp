@@ -18,9 +18,9 @@ constexpr double pi = 3.14159265358979323846;
 
 /// A plane, seen from a few degrees or, with a narrow `fov`, all alike.
 std::string plane_job(const std::string& material, const std::string& lights, double fov,
-                      const std::string& image = "") {
+                      const std::string& image = "", int pixels = 24) {
   const std::string path = testing::TempDir() + "mica_gather_light_test.toml";
-  std::ofstream(path) << "[image]\nwidth = 24\nheight = 24\nsubpixels = 1\n"
+  std::ofstream(path) << "[image]\nwidth = " << pixels << "\nheight = " << pixels << "\nsubpixels = 1\n"
                       << image << "\n[camera]\nposition = [0.0, -3.0, 2.0]\nfov = " << fov << R"(
 [surface.flat]
 generate = "spectrum"
@@ -215,6 +215,62 @@ TEST(GatherLight, SeedChangesTheNoise) {
   std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
   std::ofstream(job) << "seed = 2\n" << text;
   EXPECT_NE(one.pixels, render_job(job, Techniques::both).pixels);
+}
+
+/// The pictures of frames [first, last], one after the other.
+std::vector<Image> render_frames(const std::string& path, int first, int last) {
+  Job job = load_job(path, {});
+  job.frames.first = first, job.frames.last = last;
+  const Plan plan = make_plan(job);
+  Device device(0);
+  BuiltJob built(job, plan, device);
+  std::vector<Image> images;
+  for (int frame = first; frame <= last; ++frame)
+    images.push_back(render_frame(built, frame, device.info(), [](int, int) {}).image);
+  return images;
+}
+
+TEST(GatherLight, NoiseChangesFromFrameToFrameAndNotByWhereOneBegins) {
+  const std::string still = plane_job(chalk, environment(lamp_sky), 30, "samples = 2");
+  const Image without_frames = render_job(still, Techniques::both);
+  std::ofstream(still, std::ios::app) << "\n[frames]\nrange = [0, 9]\n";
+  const std::vector<Image> sequence = render_frames(still, 0, 2);
+  EXPECT_EQ(without_frames.pixels, sequence[0].pixels);
+  EXPECT_NE(sequence[0].pixels, sequence[1].pixels);
+  EXPECT_NE(sequence[1].pixels, sequence[2].pixels);
+  EXPECT_EQ(render_frames(still, 2, 2).front().pixels, sequence[2].pixels);
+  // Independent of each other: the noise of a difference has the variance of both.
+  Image difference = sequence[1];
+  for (std::size_t n = 0; n < difference.pixels.size(); ++n) difference.pixels[n] -= sequence[2].pixels[n];
+  const double ratio =
+      std::pow(mean_of(difference, 0).error, 2) /
+      (std::pow(mean_of(sequence[1], 0).error, 2) + std::pow(mean_of(sequence[2], 0).error, 2));
+  EXPECT_NEAR(ratio, 1, 0.35);
+}
+
+/// The case that throws fireflies: lamps small enough that few draws find them, on a map that sends their
+/// light to few pixels.
+Image killer_case(Techniques techniques, int samples) {
+  const std::string sky = environment([](const Eigen::Vector3d& d) {
+    const double bulb = std::exp(-2000 * (d - Eigen::Vector3d(0.3, 0.7, 0.65).normalized()).squaredNorm());
+    return Color::Constant(0.05 + 2000 * bulb);
+  });
+  const std::string material =
+      "surface = \"noise\"\nroughness = 0.01\nrepeat = [40, 40]\nndf = \"cavities\"\nenergy = \"table\"\n";
+  return render_job(plane_job(material, sky, 12, "samples = " + std::to_string(samples), 10), techniques);
+}
+
+double largest_ratio(const Image& image, const Image& to) {
+  double largest = 0;
+  for (std::size_t n = 0; n < image.pixels.size(); ++n)
+    largest = std::max(largest, static_cast<double>(image.pixels[n] / to.pixels[n]));
+  return largest;
+}
+
+TEST(GatherLight, NoPixelOfAKillerCaseIsAFirefly) {
+  const Image converged = killer_case(Techniques::both, 2048);
+  EXPECT_LT(largest_ratio(killer_case(Techniques::both, 256), converged), 10);
+  EXPECT_GT(largest_ratio(killer_case(Techniques::brdf, 256), converged), 10) << "the case is too easy";
 }
 
 TEST(GatherLight, LightBouncesInAHollowSphere) {

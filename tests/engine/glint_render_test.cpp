@@ -121,8 +121,22 @@ TEST(GlintRender, IsTheSameForAnyBlockSize) {
   EXPECT_EQ(render_sphere(keys, 72).image.pixels, render_sphere(keys, 5).image.pixels);
 }
 
-TEST(GlintRender, AreRefusedInLightFromAllAround) {
-  EXPECT_THROW(render_sphere("", 0, kFurnace), UsageError);
+TEST(GlintRender, ShinesInLightFromAllAround) {
+  const double black =
+      total(render_sphere("colors = [[0, 0, 0]]", 0, kFurnace), 0);  // what is around the sphere
+  const double smooth = total(render_sphere("density = 1e12", 0, kFurnace), 0) - black,
+               glints = total(render_sphere("density = 1e5", 0, kFurnace), 0) - black;
+  EXPECT_NEAR(glints, smooth, 0.02 * smooth);
+  const RenderResult colored = render_sphere("density = 1e5\ncolors = [[1, 0, 0], [1, 0.5, 0]]", 0, kFurnace);
+  const double expected[] = {1, 0.25, 0};
+  for (std::size_t channel = 0; channel < 3; ++channel)
+    EXPECT_NEAR(total(colored, channel) - black, expected[channel] * glints, 1e-4 * glints);
+}
+
+TEST(GlintRender, RefusesWhatLightFromAllAroundCannotShow) {
+  for (const std::string& keys :
+       {std::string("mapping = \"triplanar\""), "textures = { alpha = \"" + ramp() + "\" }"})
+    EXPECT_THROW(render_sphere(keys, 0, kFurnace), UsageError);
 }
 
 TEST(GlintRender, PlansNothingButAKernel) {

@@ -201,10 +201,10 @@ const std::vector<Mistake> wrong_words = {
     {"\"bumps\"", "\"bumps\"\nndf = @\"reference\"",
      "material.gold.ndf: found \"reference\", which is not available in this version; expected an evaluator "
      "that "
-     "is available: triangles, gaussians, beckmanns, smooth, cavities, pyramid, auto, grid"},
+     "is available: triangles, gaussians, beckmanns, smooth, cavities, pyramid, auto, grid, normalmap"},
     {"\"bumps\"", "\"bumps\"\nndf = @\"triangle\"",
      "material.gold.ndf: found \"triangle\"; expected an evaluator that is available: triangles, gaussians, "
-     "beckmanns, smooth, cavities, pyramid, auto, grid (did you mean \"triangles\"?)"},
+     "beckmanns, smooth, cavities, pyramid, auto, grid, normalmap (did you mean \"triangles\"?)"},
     {"", "[image]\naovs = [\"uv\", @\"depth\"]",
      "image.aovs.1: found \"depth\" (a string); expected one of: ndf, uv, footprint, normal, queries"},
     {"", "[image]\naovs = [\"uv\", @\"uv\"]", "image.aovs.1: found \"uv\" again; expected each at most once"},
