@@ -1,7 +1,7 @@
 // `pyramid` and `auto` on 2048^2 maps: error, speed, memory and build over footprints of 1 to 4096 texels,
 // against the best fixed evaluator that keeps 1%, random footprints, in one run; and a zoom. Prints a table.
 // Errors are relative L2 against `triangles`, which keeps 1e-4 of the oracle.
-//   pyramid_bench [SURFACE... | FILE.exr...] [--quick]
+//   pyramid_bench [SURFACE... | FILE...] [--quick] [--errors]      --errors: times nothing
 
 #include <fmt/format.h>
 
@@ -123,12 +123,17 @@ double strict_auto_error(Device& device, const Surface& surface, const std::vect
   return error_of(&chooser, few, expected);
 }
 
-void measure(Device& device, const std::string& name, double roughness, bool quick) {
+struct Effort {
+  bool quick = false;  ///< few footprints
+  bool timed = true;
+};
+
+void measure(Device& device, const std::string& name, double roughness, const Effort& effort) {
   const Surface surface = make_named(name);
   TriangleEvaluator triangles(device, surface);
   PyramidEvaluator pyramid(device, surface);
   std::vector<double> sigmas = {1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096};
-  if (quick) sigmas = {8, 32, 128, 512};
+  if (effort.quick) sigmas = {8, 32, 128, 512};
   for (const double sigma : sigmas) {
     const std::vector<Query> queries = random_queries(surface, sigma, roughness, 1 << 16);
     const std::vector<Query> few = thinned(queries, sigma > 64 ? 2048 : 512);
@@ -138,8 +143,10 @@ void measure(Device& device, const std::string& name, double roughness, bool qui
     chooser.calibrate(thinned(queries, 1024));
     const double auto_error = error_of(&chooser, few, expected);
     const double strict_error = strict_auto_error(device, surface, queries, few, expected);
-    const double pyramid_rate = rate(&pyramid, queries), auto_rate = rate(&chooser, queries);
-    const Row fixed = best_fixed(device, surface, &triangles, queries, few, expected);
+    const double pyramid_rate = effort.timed ? rate(&pyramid, queries) : 0,
+                 auto_rate = effort.timed ? rate(&chooser, queries) : 0;
+    const Row fixed =
+        effort.timed ? best_fixed(device, surface, &triangles, queries, few, expected) : Row{"-", 1};
     fmt::print(
         "{:<10} {:>5} {:>5}  {:>8.3f}% {:>10.0f}  {:>8.3f}% {:>10.0f} {:>6.1f} MiB {:>7.2f}x  {:>8.4f}%  "
         "{:<12} {}\n",
@@ -185,7 +192,7 @@ void zoom(Device& device, const std::string& name, double roughness) {
       name, roughness, 100 * *most, worst);
 }
 
-int run(std::vector<std::string> names, bool quick) {
+int run(std::vector<std::string> names, const Effort& effort) {
   Device device(0);
   if (names.empty()) names = {"spectrum", "brushed", "flakes", "scratches"};
   fmt::print("device {}; random footprints, wall clock, median of {}\n", device.info().name, kRepeats);
@@ -193,7 +200,7 @@ int run(std::vector<std::string> names, bool quick) {
              "rough", "sigma", "pyramid", "queries/s", "auto 1%", "queries/s", "memory", "of best",
              "auto 0.1%", "best fixed", "auto's choice");
   for (const std::string& name : names)
-    for (const double roughness : {0.02, 0.005}) measure(device, name, roughness, quick);
+    for (const double roughness : {0.02, 0.005}) measure(device, name, roughness, effort);
   for (const std::string& name : names) zoom(device, name, 0.02);
   return 0;
 }
@@ -204,10 +211,16 @@ int run(std::vector<std::string> names, bool quick) {
 int main(int argc, char** argv) {
   try {
     std::vector<std::string> names(argv + 1, argv + argc);
-    const auto quick = std::remove(names.begin(), names.end(), "--quick");
-    const bool is_quick = quick != names.end();
-    names.erase(quick, names.end());
-    return mica::bench::run(names, is_quick);
+    const auto taken = [&names](const char* option) {
+      const auto found = std::remove(names.begin(), names.end(), option);
+      const bool given = found != names.end();
+      names.erase(found, names.end());
+      return given;
+    };
+    mica::bench::Effort effort;
+    effort.quick = taken("--quick");
+    effort.timed = !taken("--errors");
+    return mica::bench::run(names, effort);
   } catch (const mica::Error& error) {
     fmt::print(stderr, "pyramid_bench: {}\n", error.what());
     return static_cast<int>(error.code());

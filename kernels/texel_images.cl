@@ -15,7 +15,7 @@
 
 // Normals may change by this many roughnesses over a piece; triangles are cut into MOST_CUTS^2 pieces at most: where normals
 // change faster they are spread too thin for their pieces' shape to matter.
-#define PIECE_ROUGHNESSES 2.0f
+#define PIECE_ROUGHNESSES 3.0f
 #define MOST_CUTS 8
 
 // Bits of the children of `node` with pieces that reach the cutoff: as surviving_records, with half the bound's weight.
