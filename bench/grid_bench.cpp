@@ -5,10 +5,11 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <fstream>
+#include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "host/base/error.h"
 #include "host/bench/fma_peak.h"
@@ -17,7 +18,8 @@
 namespace mica::bench {
 namespace {
 
-constexpr int kWidth = 1920, kHeight = 1080, kLights = 3, kRepeats = 31, kRowStep = 8;
+constexpr int kWidth = 1920, kHeight = 1080, kLights = 3, kRepeats = 15, kRowStep = 8;
+constexpr double kElevations[2] = {90, 25};  // degrees
 
 // Operations on floats of one evaluation, a multiply-add counted as two; hashes are integers and not counted.
 // A glint: place 8, whitened distances 8, exponent 7, distance to the rim 5, roulette 15, exponential 11,
@@ -55,33 +57,16 @@ std::vector<Query> plane_queries(double elevation_degrees) {
   return queries;
 }
 
-/// Of the kernel alone. Other programs on the machine only ever make a launch longer: the shortest is printed
-/// too.
-struct Seconds {
-  double median, shortest;
+struct Row {
+  double elevation, alpha, density;
+  Distribution distribution;
+  std::unique_ptr<GridEvaluator> evaluator;
+  std::vector<double> seconds = {};  ///< of the kernel alone, sorted
 };
-Seconds device_seconds(GridEvaluator* evaluator, const std::vector<Query>& queries) {
-  std::vector<double> seconds;
-  for (int repeat = 0; repeat <= kRepeats; ++repeat) {
-    const double before = evaluator->device_seconds();
-    evaluator->evaluate(queries);
-    if (repeat > 0) seconds.push_back(evaluator->device_seconds() - before);
-  }
-  std::sort(seconds.begin(), seconds.end());
-  return {seconds[seconds.size() / 2], seconds.front()};
-}
 
-int run(const char* json_path) {
-  Device device(0);
-  const double peak = measure_fma_peak(device);
-  fmt::print("device {}, multiply-add peak {:.0f} GFLOP/s, {:.0f} operations an evaluation\n",
-             device.info().name, 1e-9 * peak, kFlops);
-  fmt::print("{:>17} {:>9} {:>9} {:>9} {:>15} {:>15} {:>9} {:>9}\n", "distribution", "elevation", "roughness",
-             "density", "evaluations/s", "at best", "of peak", "ms/frame");
-  double slowest = 1e300, fastest = 0;
-  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
-  for (const double elevation : {90.0, 25.0}) {
-    const std::vector<Query> queries = plane_queries(elevation);
+std::vector<Row> make_rows(Device& device, std::size_t queries) {
+  std::vector<Row> rows;
+  for (const double elevation : kElevations) {
     for (const Distribution distribution : {Distribution::beckmann, Distribution::trowbridge_reitz}) {
       for (const double alpha : {0.1, 0.6}) {
         for (const double density : {1e4, 1e8}) {
@@ -89,30 +74,64 @@ int run(const char* json_path) {
           grid.distribution = distribution;
           grid.alpha_x = grid.alpha_y = alpha;
           grid.density = density;
-          GridEvaluator evaluator(device, grid, {},
-                                  queries.size());  // one launch: the host is idle meanwhile
-          const Seconds seconds = device_seconds(&evaluator, queries);
-          const double rate = static_cast<double>(queries.size()) / seconds.median,
-                       best = static_cast<double>(queries.size()) / seconds.shortest;
-          slowest = std::min(slowest, best), fastest = std::max(fastest, best);
-          const char* const name = distribution == Distribution::beckmann ? "Beckmann" : "Trowbridge-Reitz";
-          fmt::print("{:>17} {:>9} {:>9} {:>9} {:>15.4g} {:>15.4g} {:>8.0f}% {:>9.2f}\n", name, elevation,
-                     alpha, density, rate, best, 100 * best * kFlops / peak, 1e3 * kRowStep * seconds.median);
-          rows.push_back({{"distribution", name},
-                          {"elevation_degrees", elevation},
-                          {"roughness", alpha},
-                          {"density", density},
-                          {"evaluations_per_second", rate},
-                          {"evaluations_per_second_at_best", best},
-                          {"share_of_peak", best * kFlops / peak}});
+          // One launch: the host is idle meanwhile.
+          rows.push_back({elevation, alpha, density, distribution,
+                          std::make_unique<GridEvaluator>(device, grid, std::nullopt, queries)});
         }
       }
     }
   }
+  return rows;
+}
+
+/// All rows in turn, again and again, so that other programs on the machine disturb all of them alike.
+/// @return the multiply-add peak, the best of those that were measured in between.
+double measure(Device& device, std::vector<Row>* rows, const std::vector<Query> (&queries)[2]) {
+  double peak = 0;
+  for (int repeat = 0; repeat <= kRepeats; ++repeat) {
+    peak = std::max(peak, measure_fma_peak(device));
+    for (Row& row : *rows) {
+      const double before = row.evaluator->device_seconds();
+      row.evaluator->evaluate(queries[row.elevation == kElevations[1]]);
+      if (repeat > 0) row.seconds.push_back(row.evaluator->device_seconds() - before);
+    }
+  }
+  for (Row& row : *rows) std::sort(row.seconds.begin(), row.seconds.end());
+  return peak;
+}
+
+int run(const char* json_path) {
+  Device device(0);
+  const std::vector<Query> queries[2] = {plane_queries(kElevations[0]), plane_queries(kElevations[1])};
+  const auto count = static_cast<double>(queries[0].size());
+  std::vector<Row> rows = make_rows(device, queries[0].size());
+  const double peak = measure(device, &rows, queries);
+  fmt::print("device {}, multiply-add peak {:.0f} GFLOP/s, {:.0f} operations an evaluation\n",
+             device.info().name, 1e-9 * peak, kFlops);
+  fmt::print("{:>17} {:>9} {:>9} {:>9} {:>15} {:>15} {:>9} {:>9}\n", "distribution", "elevation", "roughness",
+             "density", "evaluations/s", "at best", "of peak", "ms/frame");
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  double slowest = 1e300, fastest = 0;
+  for (const Row& row : rows) {
+    // Other programs only ever make a launch longer: the shortest is printed too.
+    const double median = row.seconds[row.seconds.size() / 2], best = count / row.seconds.front();
+    slowest = std::min(slowest, best), fastest = std::max(fastest, best);
+    const char* const name = row.distribution == Distribution::beckmann ? "Beckmann" : "Trowbridge-Reitz";
+    fmt::print("{:>17} {:>9} {:>9} {:>9} {:>15.4g} {:>15.4g} {:>8.0f}% {:>9.2f}\n", name, row.elevation,
+               row.alpha, row.density, count / median, best, 100 * best * kFlops / peak,
+               1e3 * kRowStep * median);
+    list.push_back({{"distribution", name},
+                    {"elevation_degrees", row.elevation},
+                    {"roughness", row.alpha},
+                    {"density", row.density},
+                    {"evaluations_per_second", count / median},
+                    {"evaluations_per_second_at_best", best},
+                    {"share_of_peak", best * kFlops / peak}});
+  }
   fmt::print("fastest over slowest, at best: {:.2f}\n", fastest / slowest);
   if (json_path)
     std::ofstream(json_path)
-        << nlohmann::ordered_json({{"device", device.info().name}, {"rows", rows}}).dump(2) << '\n';
+        << nlohmann::ordered_json({{"device", device.info().name}, {"rows", list}}).dump(2) << '\n';
   return 0;
 }
 

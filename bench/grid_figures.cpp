@@ -45,7 +45,7 @@ struct Plot {
 };
 
 std::string draw(const Plot& plot) {
-  constexpr double width = 460, height = 300, left = 56, top = 30, right = 12, bottom = 44;
+  constexpr double width = 460, height = 300, left = 56, top = 30, right = 22, bottom = 44;
   Svg svg(width, height);
   const auto at = [&](double x, double y) {
     return std::pair(left + plot.x(x) * (width - left - right),
@@ -62,13 +62,13 @@ std::string draw(const Plot& plot) {
     svg.line(px, py, at(plot.x_ticks.back(), y).first, py, "#e0e0e0", 1);
     svg.text(px - 6, py + 4, fmt::format("{:g}", y), Anchor::end);
   }
-  double row = top + 14;
+  double row = height - bottom - 14 * static_cast<double>(plot.curves.size()) + 6;
   for (const Curve& curve : plot.curves) {
     std::vector<std::pair<double, double>> points;
     for (const auto& [x, y] : curve.points) points.push_back(at(x, y));
     svg.polyline(points, curve.color, 1.8, curve.dashed);
-    svg.line(width - 190, row - 4, width - 166, row - 4, curve.color, 1.8, curve.dashed);
-    svg.text(width - 160, row, curve.name);
+    svg.line(left + 8, row - 4, left + 32, row - 4, curve.color, 1.8, curve.dashed);
+    svg.text(left + 38, row, curve.name);
     row += 14;
   }
   svg.text(width / 2, 16, plot.title, Anchor::middle, 12, "#111111");
@@ -163,9 +163,9 @@ Plot energy_plot(Device& device) {
             "roughness",
             "energy",
             linear(0, 1),
-            linear(0.5, 1.1),
+            linear(0.3, 1.1),
             {0, 0.2, 0.4, 0.6, 0.8, 1},
-            {0.5, 0.6, 0.7, 0.8, 0.9, 1, 1.1},
+            {0.3, 0.5, 0.7, 0.9, 1.1},
             {}};
   for (const Distribution distribution : {Distribution::beckmann, Distribution::trowbridge_reitz}) {
     const bool beckmann = distribution == Distribution::beckmann;
@@ -238,7 +238,7 @@ double error_of(const Estimates& estimates, const std::vector<double>& truth, st
 }
 
 Plot noise_plot(Device& device) {
-  constexpr int footprints = 48, draws = 4096, truth_draws = 1 << 16;
+  constexpr int footprints = 48, draws = 1 << 14, truth_draws = 1 << 16;
   constexpr double alpha = 0.3;
   Plot plot{"Noise under light from all around",
             "draws",

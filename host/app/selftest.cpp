@@ -7,6 +7,7 @@
 
 #include "host/app/commands.h"
 #include "host/app/device_checks.h"
+#include "host/app/grid_checks.h"
 #include "host/app/interrupt.h"
 #include "host/app/json_file.h"
 #include "host/app/output.h"
@@ -141,6 +142,7 @@ int run(int device_index, double evaluations, const std::string& json_path) {
   take(check_special_functions(&device));
   take(check_evaluator("triangles", &device));
   take(check_gaussians(&device));
+  take(check_grid(&device));
 
   print_arithmetic(arithmetic);
   const std::vector<HardResult> hard = print_hard_cases(&device, static_cast<std::uint64_t>(evaluations));
@@ -172,7 +174,9 @@ void add_selftest(CLI::App& app, Command* chosen) {
       "compared\n"
       "with the reference in double precision: allowed are 1e-4 of it (1e-3 at roughness 1e-4) plus 1e-6 of "
       "the\n"
-      "footprint's peak; gaussians, of the mixture's own sum: 1e-4 plus 2e-5 of the peak.");
+      "footprint's peak; gaussians, of the mixture's own sum: 1e-4 plus 2e-5 of the peak; grid, of its "
+      "definition:\n"
+      "1e-4 plus 1e-6 of the smooth distribution, and 5e-4 for the density of its draws.");
   command->add_option("--device", *device_index, "OpenCL device, by its number in `mica devices`")
       ->type_name("N")
       ->capture_default_str();

@@ -163,7 +163,6 @@ TEST_P(Grid, MapsKeepAreas) {
         std::max(worst_map, (process.to_disk(half) - Eigen::Vector2d(mapped[n], mapped[count + n])).norm());
     const double expected = process.smooth_density(half);
     worst_density = std::max(worst_density, std::abs(mapped[2 * count + n] - expected) / (expected + 1e-3));
-    if (n % 8) continue;
     const double step = 1e-4 * cos2;
     Eigen::Matrix2d jacobian;
     for (int axis = 0; axis < 2; ++axis) {
@@ -220,7 +219,7 @@ TEST_P(Grid, IsTheSmoothDistributionOnAverage) {
 
 TEST_P(Grid, ZoomsWithoutLosingEnergy) {
   const GlintGrid grid = grid_of(GetParam(), 0.3, 1e6);
-  for (double cells = 1; cells <= 1e6; cells *= std::sqrt(10.0)) {  // in a pixel, whose sides are two sigma
+  for (double cells = 1; cells < 1.1e6; cells *= std::sqrt(10.0)) {  // in a pixel, whose sides are two sigma
     const Mean mean = mean_ratio(&device_, grid, 0.5 * std::sqrt(cells), 0.6, 0.03, 1 << 18);
     EXPECT_NEAR(mean.mean, 1, 0.03) << cells;
     EXPECT_LE(mean.error, 0.01) << cells;
