@@ -36,21 +36,25 @@ typedef struct {
 // Lanes of the children with lobes that do not face direction (o_x, o_y, o_z) as a whole.
 static inline wave_int turn_away(global const mica_lobe_query* query, const private lobe_children* c, float o_x, float o_y,
                                  float o_z) {
-  const wave_float along_min = min(o_x * c->x_min, o_x * c->x_max) + min(o_y * c->y_min, o_y * c->y_max);
-  const wave_float along_max = max(o_x * c->x_min, o_x * c->x_max) + max(o_y * c->y_min, o_y * c->y_max);
+  const private oriented_boxes* b = &c->boxes;
+  const wave_float o_1 = fma(b->axis_x, o_x, b->axis_y * o_y), o_2 = fma(b->axis_x, o_y, -(b->axis_y * o_x));
+  const wave_float along_min = min(o_1 * b->along_min, o_1 * b->along_max) + min(o_2 * b->across_min, o_2 * b->across_max);
+  const wave_float along_max = max(o_1 * b->along_min, o_1 * b->along_max) + max(o_2 * b->across_min, o_2 * b->across_max);
   const wave_float along = max(fabs(along_min), fabs(along_max));
-  // |B o|^2 (S + sigma_r^2) at most
+  // o^T C o + sigma_r^2 |B o|^2 at most
   const wave_float stretch = c->w * fma((1.0f + c->w) * along, along, fma(o_x, o_x, o_y * o_y));
+  const wave_float s_1 = b->spread_along * o_1, s_2 = b->spread_across * o_2;
   const float to_roughness = 1.0f / query->map.inverse_roughness;
-  const wave_float variance = to_roughness * to_roughness * fma(query->spread_variance * c->spread, c->spread, 1.0f);
+  const wave_float variance =
+      to_roughness * to_roughness * fma(query->spread_variance, fma(s_1, s_1, s_2 * s_2), stretch);
   const wave_float facing = max(o_z - along_max, 0.0f);
-  return wave_mask(facing * facing <= FACING_DEVIATIONS * FACING_DEVIATIONS * stretch * variance);
+  return wave_mask(facing * facing <= FACING_DEVIATIONS * FACING_DEVIATIONS * variance);
 }
 
 static inline uint surviving_lobes(global const mica_patch_query* query, private leaf_results* results,
                                    global const short* node, int i, int j, int child_size, WAVE_SHARED int* scratch) {
   const lobe_children c = load_children(&query->lobe, node, i, j, child_size);
-  const wave_int near = c.present & wave_mask(c.q_position <= query->lobe.map.cutoff);
+  const wave_int near = c.boxes.present & wave_mask(c.q_position <= query->lobe.map.cutoff);
   results->dense = wave_ballot(matter_to_density(&query->lobe, &c), scratch);
   results->turned = 0;
   if (results->all) {

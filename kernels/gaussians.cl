@@ -8,6 +8,7 @@
 
 #include "gaussian.h"
 #include "map_cull.h"
+#include "oriented_bound.h"
 #include "types.h"
 #include "wave.h"
 
@@ -26,29 +27,19 @@
 #define MICA_COUNT_ELEMENTS 0
 #endif
 
-// Bits of the children of `node` that reach the cutoff; as in map_cull.h, for means in a box and standard deviations of
-// up to `spread` about them, at centres that lie half an element inside the children.
+// Bits of the children of `node` that reach the cutoff; centres lie half an element inside the children.
 static inline uint surviving_elements(global const mica_mixture_query* query, global const short* node, int i, int j,
                                       int child_size, WAVE_SHARED int* scratch) {
   global const mica_map_query* place = &query->map;
-  const wave_float s_min = wave_to_float(wave_load_short(node));
-  const wave_float s_max = wave_to_float(wave_load_short(node + 16));
-  const wave_float t_min = wave_to_float(wave_load_short(node + 32));
-  const wave_float t_max = wave_to_float(wave_load_short(node + 48));
-  const wave_float spread = wave_to_float(wave_load_short(node + 64));
+  const oriented_boxes boxes = load_boxes(node, 1.0f);
   const float to_bound = (float)MICA_BOUND_ONE / MICA_NORMAL_ONE;
-  const float h_s = place->half_s * to_bound, h_t = place->half_t * to_bound;
-  const wave_float d_s = max(max(s_min - h_s, h_s - s_max), 0.0f);
-  const wave_float d_t = max(max(t_min - h_t, h_t - t_max), 0.0f);
-  const float k = place->inverse_roughness / MICA_BOUND_ONE;
-  const wave_float variance = fma(query->spread_variance * spread, spread, 1.0f);
   const wave_float x = wave_to_float(i + (WAVE_LANE & 3) * child_size) - (place->mean_x - 0.5f * ELEMENT_SIZE);
   const wave_float y = wave_to_float(j + (WAVE_LANE >> 2) * child_size) - (place->mean_y - 0.5f * ELEMENT_SIZE);
-  const wave_float q_position = footprint_bound(place, x, y, child_size - ELEMENT_SIZE);
-  // q_normal + q_position <= cutoff, without the division by the variance
-  const wave_int survives =
-      wave_mask(k * k * fma(d_s, d_s, d_t * d_t) <= (place->cutoff - q_position) * variance);
-  return wave_ballot(survives & wave_mask(s_min <= s_max), scratch);
+  const wave_float q_position = footprint_bound(place, x, y, child_size - ELEMENT_SIZE), one = 1.0f;
+  return wave_ballot(reach_cutoff(&boxes, place->half_s * to_bound, place->half_t * to_bound,
+                                  place->inverse_roughness / MICA_BOUND_ONE, query->spread_variance, one, q_position,
+                                  place->cutoff),
+                     scratch);
 }
 
 // Sixteen elements, one of each quad of a leaf. `x`, `y`: centres less the footprint's mean, texels. `e`: the half vector

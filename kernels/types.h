@@ -24,7 +24,10 @@ enum {
   MICA_TILE = 16,            // texels a side; sixteen tiles a block
   MICA_LEAF = 4,             // texels a side; sixteen leaves a tile
   MICA_NODE_STRIDE = 64,     // shorts a node: s_min[16], s_max[16], t_min[16], t_max[16]
-  MICA_MIXTURE_NODE_STRIDE = 80, // the same of the elements' means, then spread[16]
+  // Shorts a node of a mixture, sixteen of each: an axis x, y; the elements' means along it min, max and across it min, max;
+  // how far elements spread along and across.
+  MICA_MIXTURE_NODE_STRIDE = 128,
+  MICA_SPREAD_UNIT = 2,  // of the spreads of `gaussians`, in units of their means
   // Shorts a leaf of lobes: mean_x[16], mean_y[16], and the rows of the spread's Cholesky factor xx[16], yx[16], yy[16];
   // then four floats: the mean that the means are counted from, x and y, and the units of means and of spreads.
   MICA_LOBE_LEAF = 88,

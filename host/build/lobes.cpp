@@ -11,6 +11,7 @@
 #include "host/base/error.h"
 #include "host/build/lobe_moments.h"
 #include "host/build/mixture.h"
+#include "host/build/mixture_bound.h"
 
 namespace mica {
 namespace {
@@ -80,43 +81,29 @@ Lobe load_lobe(const std::int16_t* leaf, int n) {
   return lobe;
 }
 
-/// Larger singular value of the lower triangular spread.
-double largest_spread(const Lobe& lobe) {
-  const double a = lobe.spread_xx, b = lobe.spread_yx, c = lobe.spread_yy;
-  return std::sqrt(0.5 * (a * a + b * b + c * c + std::hypot(a * a - b * b - c * c, 2 * a * b)));
+/// Of slopes: B S B.
+ElementMoments slope_moments_of(const Lobe& lobe) {
+  const Eigen::Vector2d& p = lobe.mean;
+  const double root_w = std::sqrt(1 + p.squaredNorm());
+  const auto stretched = [&](const Eigen::Vector2d& d) {
+    return Eigen::Vector2d(root_w * (d + p.dot(d) * p));
+  };
+  const Eigen::Vector2d x = stretched({lobe.spread_xx, lobe.spread_yx}), y = stretched({0, lobe.spread_yy});
+  return {p, x.x() * x.x() + y.x() * y.x(), x.x() * x.y() + y.x() * y.y(), x.y() * x.y() + y.y() * y.y()};
 }
 
-/// Box of the means of some lobes, and their largest spread.
-struct LobeBound {
-  Eigen::Array2d low = Eigen::Array2d::Constant(INFINITY), high = Eigen::Array2d::Constant(-INFINITY);
-  double spread = 0;
+/// Largest slope and standard deviation of some lobes.
+struct LobeRange {
+  double slope = 0, spread = 0;
 
-  void add(const LobeBound& other) {
-    low = low.min(other.low), high = high.max(other.high);
-    spread = std::max(spread, other.spread);
+  void add(const LobeRange& other) {
+    slope = std::max(slope, other.slope), spread = std::max(spread, other.spread);
   }
-  void add(const Lobe& lobe) {
-    low = low.min(lobe.mean.array()), high = high.max(lobe.mean.array());
-    spread = std::max(spread, largest_spread(lobe));
+  void add(const ElementMoments& lobe) {
+    const double largest = 0.5 * (lobe.xx + lobe.yy + std::hypot(lobe.xx - lobe.yy, 2 * lobe.xy));
+    add(LobeRange{lobe.mean.norm(), std::sqrt(largest)});
   }
 };
-
-/// Rounded outwards. A child without lobes gets an empty box.
-void store(const LobeBound& bound, int child, double slope_unit, double spread_unit, std::int16_t* node) {
-  const auto clamped = [](double n) {
-    return static_cast<std::int16_t>(std::clamp<double>(n, -kLargest16, kLargest16));
-  };
-  if (bound.low.x() > bound.high.x()) {
-    node[child] = node[child + 32] = INT16_MAX;
-    node[child + 16] = node[child + 48] = INT16_MIN;
-    return;
-  }
-  node[child] = clamped(std::floor(bound.low.x() / slope_unit));
-  node[child + 16] = clamped(std::ceil(bound.high.x() / slope_unit));
-  node[child + 32] = clamped(std::floor(bound.low.y() / slope_unit));
-  node[child + 48] = clamped(std::ceil(bound.high.y() / slope_unit));
-  node[child + 64] = clamped(std::ceil(bound.spread / spread_unit));
-}
 
 /// Lobes of one block, leaf by leaf.
 void store_block(const Surface& surface, int elements, int block_x, int block_y, const mica_map_grid& grid,
@@ -139,26 +126,27 @@ void store_block(const Surface& surface, int elements, int block_x, int block_y,
   }
 }
 
-/// The bound of a leaf's lobes as they are stored.
-LobeBound bound_leaf(const std::int16_t* leaf, int room_i, int room_j) {
-  LobeBound bound;
+/// A leaf's lobes as they are stored.
+std::vector<ElementMoments> leaf_lobes(const std::int16_t* leaf, int room_i, int room_j) {
+  std::vector<ElementMoments> lobes;
   for (int k = 0; k < kChildren; ++k)
-    if ((k & 3) < room_i && (k >> 2) < room_j) bound.add(load_lobe(leaf, k));
-  return bound;
+    if ((k & 3) < room_i && (k >> 2) < room_j) lobes.push_back(slope_moments_of(load_lobe(leaf, k)));
+  return lobes;
 }
 
-void store_nodes(const std::int16_t* block, int room_i, int room_j, double slope_unit, double spread_unit,
+void store_nodes(const std::int16_t* block, int room_i, int room_j, const BoundUnits& units,
                  std::int16_t* block_node, std::int16_t* tile_nodes) {
   for (int tile = 0; tile < kChildren; ++tile) {
-    LobeBound tile_bound;
+    std::vector<ElementMoments> tile_lobes;
     for (int leaf = 0; leaf < kChildren; ++leaf) {
-      const LobeBound leaf_bound = bound_leaf(block + (tile * kChildren + leaf) * MICA_LOBE_LEAF,
-                                              room_i - (tile & 3) * MICA_TILE - (leaf & 3) * MICA_LEAF,
-                                              room_j - (tile >> 2) * MICA_TILE - (leaf >> 2) * MICA_LEAF);
-      store(leaf_bound, leaf, slope_unit, spread_unit, tile_nodes + tile * MICA_MIXTURE_NODE_STRIDE);
-      tile_bound.add(leaf_bound);
+      const std::vector<ElementMoments> lobes =
+          leaf_lobes(block + (tile * kChildren + leaf) * MICA_LOBE_LEAF,
+                     room_i - (tile & 3) * MICA_TILE - (leaf & 3) * MICA_LEAF,
+                     room_j - (tile >> 2) * MICA_TILE - (leaf >> 2) * MICA_LEAF);
+      store_bound(lobes, units, leaf, tile_nodes + tile * MICA_MIXTURE_NODE_STRIDE);
+      tile_lobes.insert(tile_lobes.end(), lobes.begin(), lobes.end());
     }
-    store(tile_bound, tile, slope_unit, spread_unit, block_node);
+    store_bound(tile_lobes, units, tile, block_node);
   }
 }
 
@@ -202,7 +190,7 @@ LobeStructure build_lobes(const Surface& surface, int elements) {
                      map.grid.height - static_cast<int>(block / map.grid.blocks_x) * MICA_BLOCK);
   };
 
-  std::vector<LobeBound> bounds(count);
+  std::vector<LobeRange> ranges(count);
   tbb::parallel_for(std::size_t{0}, count, [&](std::size_t block) {
     std::int16_t* lobes = map.lobes.data() + block * kLeavesABlock * MICA_LOBE_LEAF;
     store_block(surface, elements, static_cast<int>(block % map.grid.blocks_x),
@@ -211,20 +199,21 @@ LobeStructure build_lobes(const Surface& surface, int elements) {
     for (std::size_t n = 0; n < kLeavesABlock; ++n) {
       const int i = static_cast<int>(n / kChildren % 4 * MICA_TILE + n % 4 * MICA_LEAF),
                 j = static_cast<int>(n / kChildren / 4 * MICA_TILE + n % kChildren / 4 * MICA_LEAF);
-      bounds[block].add(bound_leaf(lobes + n * MICA_LOBE_LEAF, room_i - i, room_j - j));
+      for (const ElementMoments& lobe : leaf_lobes(lobes + n * MICA_LOBE_LEAF, room_i - i, room_j - j))
+        ranges[block].add(lobe);
     }
   });
-  LobeBound all;
-  for (const LobeBound& bound : bounds) all.add(bound);
-  // Of floats that are a little too large nothing is clamped.
-  constexpr double margin = 1 + 1e-6, least = 1e-12;
-  map.slope_unit =
-      static_cast<float>(std::max(all.high.abs().max(all.low.abs()).maxCoeff(), least) * margin / kLargest16);
-  map.spread_unit = static_cast<float>(std::max(all.spread, least) * margin / kLargest16);
+  LobeRange all;
+  for (const LobeRange& range : ranges) all.add(range);
+  // Of floats that are a little too large nothing is clamped; a bound's spreads are at most sqrt(2) of an
+  // element's.
+  constexpr double margin = 1 + 1e-4, least = 1e-12;
+  map.slope_unit = static_cast<float>(std::max(all.slope, least) * margin / kLargest16);
+  map.spread_unit = static_cast<float>(std::max(std::sqrt(2.0) * all.spread, least) * margin / kLargest16);
   tbb::parallel_for(std::size_t{0}, count, [&](std::size_t block) {
     const auto [room_i, room_j] = room(block);
-    store_nodes(map.lobes.data() + block * kLeavesABlock * MICA_LOBE_LEAF, room_i, room_j, map.slope_unit,
-                map.spread_unit, map.block_nodes.data() + block * MICA_MIXTURE_NODE_STRIDE,
+    store_nodes(map.lobes.data() + block * kLeavesABlock * MICA_LOBE_LEAF, room_i, room_j,
+                {map.slope_unit, map.spread_unit}, map.block_nodes.data() + block * MICA_MIXTURE_NODE_STRIDE,
                 map.tile_nodes.data() + block * kChildren * MICA_MIXTURE_NODE_STRIDE);
   });
   return map;

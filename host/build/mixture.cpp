@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "host/base/error.h"
-#include "host/build/normal_box.h"
+#include "host/build/mixture_bound.h"
 
 namespace mica {
 namespace {
@@ -17,28 +17,8 @@ using namespace device_types;
 
 constexpr int kChildren = 16;
 
-/// What a node says of the elements under it, in fixed point.
-struct ElementBound {
-  NormalBox means;
-  double spread = 0;  ///< largest standard deviation of an element's normals
-
-  void add(const ElementBound& other) {
-    means.add(other.means);
-    spread = std::max(spread, other.spread);
-  }
-};
-
-void store(const ElementBound& bound, int child, std::int16_t* node) {
-  store(bound.means, child, node);
-  const double spread = std::ceil(bound.spread * MICA_BOUND_ONE / MICA_NORMAL_ONE);
-  node[child + 64] = static_cast<std::int16_t>(std::min<double>(spread, INT16_MAX));
-}
-
-/// Larger singular value of the matrix with columns a and b.
-double spectral_norm(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  const double half_difference = 0.5 * (a.squaredNorm() - b.squaredNorm());
-  return std::sqrt(0.5 * (a.squaredNorm() + b.squaredNorm()) + std::hypot(half_difference, a.dot(b)));
-}
+constexpr double kUnit = static_cast<double>(MICA_NORMAL_ONE) / MICA_BOUND_ONE;
+constexpr BoundUnits kUnits{kUnit, MICA_SPREAD_UNIT* kUnit};
 
 /// Bounds of one block's elements, from its stored normals.
 class BlockBounds {
@@ -52,44 +32,45 @@ class BlockBounds {
 
   void write(std::int16_t* block_node, std::int16_t* tile_nodes) const {
     for (int tile = 0; tile < kChildren; ++tile) {
-      ElementBound tile_bound;
+      std::vector<ElementMoments> tile_elements;
       for (int leaf = 0; leaf < kChildren; ++leaf) {
-        const ElementBound leaf_bound = bound_leaf((tile & 3) * MICA_TILE + (leaf & 3) * MICA_LEAF,
-                                                   (tile >> 2) * MICA_TILE + (leaf >> 2) * MICA_LEAF);
-        store(leaf_bound, leaf, tile_nodes + tile * MICA_MIXTURE_NODE_STRIDE);
-        tile_bound.add(leaf_bound);
+        const std::vector<ElementMoments> elements =
+            leaf_elements((tile & 3) * MICA_TILE + (leaf & 3) * MICA_LEAF,
+                          (tile >> 2) * MICA_TILE + (leaf >> 2) * MICA_LEAF);
+        store_bound(elements, kUnits, leaf, tile_nodes + tile * MICA_MIXTURE_NODE_STRIDE);
+        tile_elements.insert(tile_elements.end(), elements.begin(), elements.end());
       }
-      store(tile_bound, tile, block_node);
+      store_bound(tile_elements, kUnits, tile, block_node);
     }
   }
 
  private:
-  ElementBound bound_leaf(int first_i, int first_j) const {
-    ElementBound bound;
+  std::vector<ElementMoments> leaf_elements(int first_i, int first_j) const {
+    std::vector<ElementMoments> elements;
     for (int j = first_j; j < std::min(first_j + MICA_LEAF, room_j_); ++j)
-      for (int i = first_i; i < std::min(first_i + MICA_LEAF, room_i_); ++i) bound.add(bound_quad(i, j));
-    return bound;
+      for (int i = first_i; i < std::min(first_i + MICA_LEAF, room_i_); ++i) add_quad(i, j, &elements);
+    return elements;
   }
 
-  ElementBound bound_quad(int i, int j) const {
-    ElementBound bound;
+  void add_quad(int i, int j, std::vector<ElementMoments>* elements) const {
     const Eigen::Vector2d s00 = normal(i, j);
     if (constant_texels_) {
-      bound.means.add(std::llround(s00.x()), std::llround(s00.y()));
-      return bound;
+      elements->push_back({s00, 0, 0, 0});
+      return;
     }
     const Eigen::Vector2d x = normal(i + 1, j) - s00, y = normal(i, j + 1) - s00;
     const Eigen::Vector2d xy = normal(i + 1, j + 1) - s00 - x - y;
-    const double kernel_sigma = std::sqrt(kPositionKernelVariance) / elements_;
+    const double variance = kPositionKernelVariance / (elements_ * elements_);
     for (int b = 0; b < elements_; ++b) {
       for (int a = 0; a < elements_; ++a) {
         const double f = (a + 0.5) / elements_, g = (b + 0.5) / elements_;
-        const Eigen::Vector2d mean = s00 + f * x + g * y + f * g * xy;
-        bound.means.add(std::llround(mean.x()), std::llround(mean.y()));
-        bound.spread = std::max(bound.spread, kernel_sigma * spectral_norm(x + g * xy, y + f * xy));
+        const Eigen::Vector2d by_x = x + g * xy, by_y = y + f * xy;  // columns of the Jacobian
+        elements->push_back({s00 + f * x + g * y + f * g * xy,
+                             variance * (by_x.x() * by_x.x() + by_y.x() * by_y.x()),
+                             variance * (by_x.x() * by_x.y() + by_y.x() * by_y.y()),
+                             variance * (by_x.y() * by_x.y() + by_y.y() * by_y.y())});
       }
     }
-    return bound;
   }
 
   Eigen::Vector2d normal(int i, int j) const {

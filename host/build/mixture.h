@@ -15,8 +15,7 @@ constexpr double kPositionKernelVariance = 0.18033688011112043;  // 1 / (8 ln 2)
 constexpr int kMaxElements = 4;
 
 /// The structure of `gaussians`: normals as for triangles, of which the kernel makes its elements as it goes.
-/// Nodes have MICA_MIXTURE_NODE_STRIDE shorts: boxes of the elements' means, and the largest standard
-/// deviation that an element's slope over its own position kernel gives its normals.
+/// Nodes are those of mixture_bound.h.
 /// @param elements a texel and axis, 1 to kMaxElements. Throws UsageError for another number and for a
 /// bicubic surface.
 MapStructure build_gaussian_mixture(const Surface& surface, int elements);

@@ -18,6 +18,9 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
+/// Of the footprint's brightest: what culling drops of a mixture, twice its cutoff, and rounding.
+constexpr double kMixtureDrops = 2e-4;
+
 double lobe_peak(const Query& query) {
   return 1 / (2 * kPi * query.roughness * query.roughness);
 }
@@ -169,7 +172,9 @@ class BeckmannJudge : public Judge {
       });
       return densities;
     };
-    const auto promise = [this](double roughness) { return Promise{3e-4 + quantised(roughness), 2e-5}; };
+    const auto promise = [this](double roughness) {
+      return Promise{3e-4 + quantised(roughness), kMixtureDrops};
+    };
     Verdict verdict = to_verdict(compare(evaluator, references, promise, surface, std::move(probes)));
     if (most_quantised > much)
       verdict.limitation =
@@ -185,7 +190,7 @@ class BeckmannJudge : public Judge {
 
  private:
   double quantised(double roughness) const {
-    constexpr double flank = 5.3, half_unit = 0.5 / 65534;  // standard deviations, at a cutoff of 1e-6
+    constexpr double flank = 4.3, half_unit = 0.5 / 65534;  // standard deviations, at a cutoff of 9e-5
     return flank * half_unit * leaf_slopes_ / roughness;
   }
 
@@ -272,11 +277,12 @@ std::unique_ptr<Judge> make_judge(const std::string& evaluator, const Surface& s
       return Promise{relative_bound(roughness), kPeakBound};
     });
   if (evaluator == "gaussians")
-    return std::make_unique<MixtureJudge>(std::make_unique<PromiseJudge>(sum_of_gaussians(surface),
-                                                                         [](double) {
-                                                                           return Promise{1e-4, 2e-5};
-                                                                         }),
-                                          oracle);
+    return std::make_unique<MixtureJudge>(
+        std::make_unique<PromiseJudge>(sum_of_gaussians(surface),
+                                       [](double) {
+                                         return Promise{1e-4, kMixtureDrops};
+                                       }),
+        oracle);
   if (evaluator == "beckmanns")
     return std::make_unique<MixtureJudge>(std::make_unique<BeckmannJudge>(surface), oracle);
   return std::make_unique<ApproximationJudge>(oracle);

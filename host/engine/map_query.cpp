@@ -187,7 +187,7 @@ device_types::mica_mixture_query to_mixture_query(const Query& query, const devi
   result.map.whiten_2y = static_cast<float>(wide_2.y());
   result.map.extent_x = static_cast<float>(std::sqrt(cutoff * wide(0, 0)));
   result.map.extent_y = static_cast<float>(std::sqrt(cutoff * wide(1, 1)));
-  const double spread_unit = 1.0 / (MICA_BOUND_ONE * query.roughness);
+  const double spread_unit = device_types::MICA_SPREAD_UNIT / (MICA_BOUND_ONE * query.roughness);
   result.spread_variance = static_cast<float>(spread_unit * spread_unit / (1 - share));
 
   const Eigen::Matrix2d cov_spacings = (tau_1 * tau_1 * axes.major * axes.major.transpose() +
