@@ -1,12 +1,15 @@
 // `pyramid` and `auto` on 2048^2 maps: error, speed, memory and build over footprints of 1 to 4096 texels,
 // against the best fixed evaluator that keeps 1%, random footprints, in one run; and a zoom. Prints a table.
 // Errors are relative L2 against `triangles`, which keeps 1e-4 of the oracle.
-//   pyramid_bench [SURFACE... | FILE...] [--quick] [--errors]      --errors: times nothing
+//   pyramid_bench [SURFACE... | FILE...] [--quick] [--errors | --costs]
+// --errors times nothing; --costs prints what the cost model of `auto` is made of.
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
+#include <numeric>
 
 #include "host/base/error.h"
 #include "host/base/stopwatch.h"
@@ -14,6 +17,7 @@
 #include "host/engine/accuracy.h"
 #include "host/engine/auto_evaluator.h"
 #include "host/engine/make_evaluator.h"
+#include "host/engine/mixture_evaluator.h"
 #include "host/engine/pyramid_evaluator.h"
 #include "host/engine/triangle_evaluator.h"
 #include "host/surface/random.h"
@@ -123,9 +127,55 @@ double strict_auto_error(Device& device, const Surface& surface, const std::vect
   return error_of(&chooser, few, expected);
 }
 
+/// Nanoseconds of one core that a query takes.
+double core_nanoseconds(Evaluator* evaluator, const std::vector<Query>& queries) {
+  evaluator->evaluate(thinned(queries, 64));
+  std::vector<double> seconds;
+  for (int repeat = 0; repeat < kRepeats; ++repeat) {
+    const std::clock_t start = std::clock();
+    evaluator->evaluate(queries);
+    seconds.push_back(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
+  }
+  return 1e9 * timing_of(seconds).median_seconds / static_cast<double>(queries.size());
+}
+
+double mean_count(Evaluator* counter, const std::vector<Query>& queries) {
+  const std::vector<float> counts = counter->evaluate(queries);
+  return std::accumulate(counts.begin(), counts.end(), 0.0) / static_cast<double>(counts.size());
+}
+
+/// What a query and one count of its kernel cost, of every evaluator that `auto` may choose: to fit its cost
+/// model to.
+void print_costs(Device& device, const std::string& name, double roughness) {
+  const Surface surface = make_named(name);
+  const auto print = [&](const std::string& evaluator, Evaluator* timed, Evaluator* counter) {
+    for (const double sigma : {1.0, 2.0, 4.0, 8.0, 16.0, 32.0}) {
+      const std::size_t count = sigma > 8 ? 1 << 10 : 1 << 13;
+      const std::vector<Query> queries = random_queries(surface, sigma, roughness, count);
+      fmt::print("{:<10} {:>5} {:>3}  {:<12} {:>10.0f} ns {:>10.0f} counts\n", name, roughness, sigma,
+                 evaluator, core_nanoseconds(timed, queries), mean_count(counter, queries));
+      std::fflush(stdout);
+    }
+  };
+  TriangleSettings triangles;
+  TriangleEvaluator timed_triangles(device, surface, triangles);
+  triangles.count_flops = true;
+  TriangleEvaluator counting_triangles(device, surface, triangles);
+  print("triangles", &timed_triangles, &counting_triangles);
+  for (const int elements : {1, 2, 4}) {
+    MixtureSettings mixture;
+    mixture.elements = elements;
+    GaussianEvaluator timed(device, surface, mixture);
+    mixture.count_elements = true;
+    GaussianEvaluator counting(device, surface, mixture);
+    print(fmt::format("gaussians {}", elements), &timed, &counting);
+  }
+}
+
 struct Effort {
   bool quick = false;  ///< few footprints
   bool timed = true;
+  bool costs = false;  ///< nothing but these
 };
 
 void measure(Device& device, const std::string& name, double roughness, const Effort& effort) {
@@ -195,6 +245,11 @@ void zoom(Device& device, const std::string& name, double roughness) {
 int run(std::vector<std::string> names, const Effort& effort) {
   Device device(0);
   if (names.empty()) names = {"spectrum", "brushed", "flakes", "scratches"};
+  if (effort.costs) {
+    for (const std::string& name : names)
+      for (const double roughness : {0.02, 0.005}) print_costs(device, name, roughness);
+    return 0;
+  }
   fmt::print("device {}; random footprints, wall clock, median of {}\n", device.info().name, kRepeats);
   fmt::print("{:<10} {:>5} {:>5}  {:>9} {:>10}  {:>9} {:>10} {:>10} {:>8}  {:>9}  {:<12} {}\n", "surface",
              "rough", "sigma", "pyramid", "queries/s", "auto 1%", "queries/s", "memory", "of best",
@@ -220,6 +275,7 @@ int main(int argc, char** argv) {
     mica::bench::Effort effort;
     effort.quick = taken("--quick");
     effort.timed = !taken("--errors");
+    effort.costs = taken("--costs");
     return mica::bench::run(names, effort);
   } catch (const mica::Error& error) {
     fmt::print(stderr, "pyramid_bench: {}\n", error.what());

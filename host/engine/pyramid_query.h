@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <tuple>
+#include <vector>
 
 #include "host/base/query.h"
 #include "host/build/moment_pyramid.h"
@@ -38,6 +39,18 @@ double cell_width(int cell_class, const PyramidPrecision& precision);
 /// None when the footprint is too small, or so thin that single precision cannot tell its determinant.
 std::optional<PyramidChoice> choose_level(const Query& query, int map_width, int map_height,
                                           const PyramidPrecision& precision);
+
+/// What a query takes of a level.
+struct PyramidShare {
+  PyramidChoice choice;
+  double weight = 1;
+};
+
+/// Levels fade into each other, so that a zoom does not show where they change: a footprint that is hardly
+/// wide enough for `choice`, its own, takes a share of the level with half its blocks, where that is not
+/// finer than `finest_block`, and one that is about to be uniform takes a share of that. One to three shares.
+std::vector<PyramidShare> shares_of(const Query& query, const PyramidChoice& choice, int map_width,
+                                    int map_height, int finest_block, const PyramidPrecision& precision);
 
 /// The query in the kernel's form. @param uniform of the choice.
 device_types::mica_pyramid_query to_pyramid_query(const Query& query, const PyramidShape& level,
