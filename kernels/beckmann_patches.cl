@@ -16,8 +16,7 @@
 #endif
 
 #include "footprint_slopes.h"
-#include "lobe.h"
-#include "lobe_bound.h"
+#include "lobe_sum.h"
 #include "types.h"
 #include "visible_area.h"
 #include "wave.h"
@@ -53,7 +52,8 @@ static inline wave_int turn_away(global const mica_lobe_query* query, const priv
 
 static inline uint surviving_lobes(global const mica_patch_query* query, private leaf_results* results,
                                    global const short* node, int i, int j, int child_size, WAVE_SHARED int* scratch) {
-  const lobe_children c = load_children(&query->lobe, node, i, j, child_size);
+  lobe_children c;
+  load_children(&query->lobe, node, i, j, child_size, &c);
   const wave_int near = c.boxes.present & wave_mask(c.q_position <= query->lobe.map.cutoff);
   results->dense = wave_ballot(matter_to_density(&query->lobe, &c), scratch);
   results->turned = 0;
@@ -87,7 +87,8 @@ static inline wave_float lobe_areas(const private lobe_leaf* lobes, float roughn
 // @param child of the leaf, in its tile.
 static inline void take_lobes(global const mica_patch_query* query, global const short* leaves, int leaf, int child, int i,
                               int j, int room_i, int room_j, private leaf_results* results) {
-  lobe_leaf lobes = load_lobes(leaves + leaf * MICA_LOBE_LEAF, query->lobe.map.inverse_roughness);
+  lobe_leaf lobes;
+  load_lobes(leaves + leaf * MICA_LOBE_LEAF, query->lobe.map.inverse_roughness, &lobes);
   const wave_float q_position = lobe_positions(&query->lobe.map, i, j);
   const wave_int inside_map = wave_mask((WAVE_LANE & 3) < room_i) & wave_mask((WAVE_LANE >> 2) < room_j);
   const wave_float nothing = 0.0f;
@@ -119,6 +120,16 @@ static inline void take_lobes(global const mica_patch_query* query, global const
 #define LEAF_TAKE(query, lobes, at, i, j, room_i, room_j, results, scratch) \
   take_lobes(query, lobes, at, leaf, i, j, room_i, room_j, results)
 #include "walk_leaves.h"
+
+#if MICA_MASKING == 1
+// For the density alone, which is all that is left to do once the pyramid has said the areas.
+#define LEAF_WALK walk_dense_leaves
+#define LEAF_RESULTS wave_float
+#define LEAF_SURVIVORS(query, node, i, j, child_size, scratch) dense_lobes(&(query)->lobe, node, i, j, child_size, scratch)
+#define LEAF_TAKE(query, lobes, at, i, j, room_i, room_j, sum, scratch) \
+  sum_lobes(&(query)->lobe, lobes, at, i, j, room_i, room_j, sum)
+#include "walk_leaves.h"
+#endif
 
 // o_z - p.o_xy of the mean slope.
 static inline float facing(slope_lobe lobe, float o_x, float o_y, float o_z) {
@@ -165,7 +176,12 @@ kernel void beckmann_patches(global const mica_patch_query* restrict queries, in
       projected = light;
     }
   }
-  walk_leaves(query, grid, lobes, block_nodes, tile_nodes, &results, scratch);
+#if MICA_MASKING == 1
+  if (!results.all) {
+    walk_dense_leaves(query, grid, lobes, block_nodes, tile_nodes, &results.density, scratch);
+  } else
+#endif
+    walk_leaves(query, grid, lobes, block_nodes, tile_nodes, &results, scratch);
   global float* answer = answers + 4 * query->lobe.map.slot;
   answer[0] = query->lobe.map.scale * wave_sum(results.density, scratch);
   answer[1] = fma(query->weight, wave_sum(results.view, scratch), view);

@@ -34,7 +34,7 @@ static inline void add_cells(global const mica_slope_footprint* at, global const
   const wave_float c = at->spread_unit * wave_to_float(wave_load_short_4x4(cell + 4 * plane, row));
   const wave_float x = wave_to_float(i - at->cell_i + (WAVE_LANE & 3)) + (0.5f - at->cell_x);
   const wave_float y = wave_to_float(j - at->cell_j + (WAVE_LANE >> 2)) + (0.5f - at->cell_y);
-  const wave_float p1 = fma(-at->shear, y, x) / at->sigma_x, p2 = y / at->sigma_y;
+  const wave_float p1 = (1.0f / at->sigma_x) * fma(-at->shear, y, x), p2 = (1.0f / at->sigma_y) * y;
   const wave_float q = fma(p1, p1, p2 * p2);
   const wave_float weight = gaussian_exp2(max((-EXP2_SCALE * EXP2_SCALE) * q, -126.0f));
   sums->weight += weight;

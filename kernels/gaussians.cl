@@ -31,7 +31,8 @@
 static inline uint surviving_elements(global const mica_mixture_query* query, global const short* node, int i, int j,
                                       int child_size, WAVE_SHARED int* scratch) {
   global const mica_map_query* place = &query->map;
-  const oriented_boxes boxes = load_boxes(node, 1.0f);
+  oriented_boxes boxes;
+  load_boxes(node, 1.0f, &boxes);
   const float to_bound = (float)MICA_BOUND_ONE / MICA_NORMAL_ONE;
   const wave_float x = wave_to_float(i + (WAVE_LANE & 3) * child_size) - (place->mean_x - 0.5f * ELEMENT_SIZE);
   const wave_float y = wave_to_float(j + (WAVE_LANE >> 2) * child_size) - (place->mean_y - 0.5f * ELEMENT_SIZE);

@@ -16,18 +16,17 @@ typedef struct {
   float base_x, base_y;
 } lobe_leaf;
 
-// Multiplies spreads by `scale`.
-static inline lobe_leaf load_lobes(global const short* leaf, float scale) {
+// Multiplies spreads by `scale`. (What returns a struct would be inlined with a note on its aliases, which oclgrind does not
+// know.)
+static inline void load_lobes(global const short* leaf, float scale, private lobe_leaf* lobes) {
   global const float* frame = (global const float*)(leaf + 80);
-  lobe_leaf lobes;
-  lobes.base_x = frame[0], lobes.base_y = frame[1];
-  lobes.offset_x = frame[2] * wave_to_float(wave_load_short(leaf));
-  lobes.offset_y = frame[2] * wave_to_float(wave_load_short(leaf + 16));
+  lobes->base_x = frame[0], lobes->base_y = frame[1];
+  lobes->offset_x = frame[2] * wave_to_float(wave_load_short(leaf));
+  lobes->offset_y = frame[2] * wave_to_float(wave_load_short(leaf + 16));
   scale *= frame[3];
-  lobes.spread_xx = scale * wave_to_float(wave_load_short(leaf + 32));
-  lobes.spread_yx = scale * wave_to_float(wave_load_short(leaf + 48));
-  lobes.spread_yy = scale * wave_to_float(wave_load_short(leaf + 64));
-  return lobes;
+  lobes->spread_xx = scale * wave_to_float(wave_load_short(leaf + 32));
+  lobes->spread_yx = scale * wave_to_float(wave_load_short(leaf + 48));
+  lobes->spread_yy = scale * wave_to_float(wave_load_short(leaf + 64));
 }
 
 // Densities of slopes at the query's half vector, times 2 pi sigma_r^2, times exp(-q_position / 2). `lobes` has its spreads

@@ -14,18 +14,16 @@ typedef struct {
 } oriented_boxes;
 
 // @param unit of the means.
-static inline oriented_boxes load_boxes(global const short* node, float unit) {
-  oriented_boxes boxes;
-  boxes.axis_x = (1.0f / MICA_BOUND_ONE) * wave_to_float(wave_load_short(node));
-  boxes.axis_y = (1.0f / MICA_BOUND_ONE) * wave_to_float(wave_load_short(node + 16));
-  boxes.along_min = unit * wave_to_float(wave_load_short(node + 32));
-  boxes.along_max = unit * wave_to_float(wave_load_short(node + 48));
-  boxes.across_min = unit * wave_to_float(wave_load_short(node + 64));
-  boxes.across_max = unit * wave_to_float(wave_load_short(node + 80));
-  boxes.spread_along = wave_to_float(wave_load_short(node + 96));
-  boxes.spread_across = wave_to_float(wave_load_short(node + 112));
-  boxes.present = wave_mask(boxes.along_min <= boxes.along_max);
-  return boxes;
+static inline void load_boxes(global const short* node, float unit, private oriented_boxes* boxes) {
+  boxes->axis_x = (1.0f / MICA_BOUND_ONE) * wave_to_float(wave_load_short(node));
+  boxes->axis_y = (1.0f / MICA_BOUND_ONE) * wave_to_float(wave_load_short(node + 16));
+  boxes->along_min = unit * wave_to_float(wave_load_short(node + 32));
+  boxes->along_max = unit * wave_to_float(wave_load_short(node + 48));
+  boxes->across_min = unit * wave_to_float(wave_load_short(node + 64));
+  boxes->across_max = unit * wave_to_float(wave_load_short(node + 80));
+  boxes->spread_along = wave_to_float(wave_load_short(node + 96));
+  boxes->spread_across = wave_to_float(wave_load_short(node + 112));
+  boxes->present = wave_mask(boxes->along_min <= boxes->along_max);
 }
 
 static inline wave_float outside(wave_float value, wave_float low, wave_float high) {

@@ -4,12 +4,17 @@
 //   LEAF_NODE_STRIDE          shorts a node;
 //   LEAF_DATA, LEAF_AT(leaf_i, leaf_j)   what leaves are stored as (default: ints), and where in a `block` (default: normals);
 //   LEAF_SURVIVORS(query, node, i, j, child_size, scratch)   bits of the children that matter;
-//   leaf_results, LEAF_TAKE(query, normals, at, i, j, room_i, room_j, results, scratch)   what a leaf adds to.
-#ifndef MICA_WALK_LEAVES_H
-#define MICA_WALK_LEAVES_H
-
+//   LEAF_WALK                 the function's name (default: walk_leaves); a kernel that walks in two ways includes this twice;
+//   LEAF_RESULTS (default: leaf_results), LEAF_TAKE(query, normals, at, i, j, room_i, room_j, results, scratch)   what a
+//                             leaf adds to.
 #include "map_cull.h"
 
+#ifndef LEAF_WALK
+#define LEAF_WALK walk_leaves
+#endif
+#ifndef LEAF_RESULTS
+#define LEAF_RESULTS leaf_results
+#endif
 #ifndef LEAF_DATA
 #define LEAF_DATA int
 #endif
@@ -20,9 +25,9 @@
 #define LEAF_PLACE(query) (query)
 #endif
 
-static inline void walk_leaves(global const LEAF_QUERY* query, mica_map_grid grid,
+static inline void LEAF_WALK(global const LEAF_QUERY* query, mica_map_grid grid,
                                global const LEAF_DATA* normals, global const short* block_nodes, global const short* tile_nodes,
-                               private leaf_results* results, WAVE_SHARED int* scratch) {
+                               private LEAF_RESULTS* results, WAVE_SHARED int* scratch) {
   global const mica_map_query* place = LEAF_PLACE(query);
   // Quad (i, j) spans [i, i + 1] in the coordinates of the mean.
   const int first_i = (int)floor(place->mean_x - place->extent_x), last_i = (int)floor(place->mean_x + place->extent_x);
@@ -55,4 +60,7 @@ static inline void walk_leaves(global const LEAF_QUERY* query, mica_map_grid gri
   }
 }
 
-#endif  // MICA_WALK_LEAVES_H
+#undef LEAF_WALK
+#undef LEAF_RESULTS
+#undef LEAF_SURVIVORS
+#undef LEAF_TAKE

@@ -10,11 +10,15 @@
 namespace mica {
 namespace {
 
+bool has_include_guard(const std::string& text) {
+  return text.find("_H\n#define ") != std::string::npos;
+}
+
 void expand(const std::string& name, std::set<std::string>* included, std::string* out) {
-  if (!included->insert(name).second) return;
   const auto found = kernel_sources().find(name);
   if (found == kernel_sources().end())
     throw DeviceError("kernel source " + name + ": no such file in kernels/");
+  if (!included->insert(name).second && has_include_guard(found->second)) return;
   std::istringstream lines(found->second);
   std::string line;
   *out += fmt::format("#line 1 \"{}\"\n", name);

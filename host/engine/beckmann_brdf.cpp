@@ -9,6 +9,7 @@
 #include "host/base/error.h"
 #include "host/base/stopwatch.h"
 #include "host/engine/map_query.h"
+#include "host/engine/mixture_evaluator.h"
 #include "host/scene/masking.h"
 #include "host/surface/disk.h"
 #include "host/surface/random.h"
@@ -17,7 +18,6 @@ namespace mica {
 namespace {
 
 constexpr std::size_t kBatchQueries = 1 << 17;
-constexpr double kCutoffError = 1e-6;
 constexpr std::size_t kAnswers = 4;   // floats a query of beckmann_patches.cl
 constexpr int kAlbedoSamples = 1024;  // a view; quasi-random
 
@@ -70,21 +70,22 @@ BeckmannBrdf::BeckmannBrdf(Device& device, const Surface& surface, const PatchBr
       grid_{lobes_.grid, lobes_.slope_unit, lobes_.spread_unit, surface.interpolation(), settings.elements},
       sampler_(lobes_, grid_),
       squared_slope_(mean_squared_slope(surface)),
-      cutoff_(cutoff_for(kCutoffError)) {
+      cutoff_(cutoff_for(MixtureSettings().cutoff_error)) {
   std::vector<cl::Buffer> buffers = {device.upload(lobes_.lobes, "the map's lobes"),
                                      device.upload(lobes_.block_nodes, "the map's bounds"),
                                      device.upload(lobes_.tile_nodes, "the map's bounds")};
   device_bytes_ = lobes_.bytes();
+  const WaveForm wave_form = settings.wave_form.value_or(device.wave_form());
   if (masking_ == Masking::geometric) {
     densities_.emplace(device, lobes_.grid, std::move(buffers), device_bytes_, "beckmanns",
-                       "-DMICA_COUNT_ELEMENTS=0", device.wave_form(), kBatchQueries);
+                       "-DMICA_COUNT_ELEMENTS=0", wave_form, kBatchQueries);
   } else {
     const SlopePyramid pyramid = build_slope_pyramid(lobes_, false);
     levels_ = pyramid.levels;
     device_bytes_ += pyramid.bytes();
     buffers.push_back(device.upload(pyramid.numbers, "the pyramid of slopes"));
     patches_.emplace(device, lobes_.grid, std::move(buffers), device_bytes_, "beckmann_patches",
-                     fmt::format("-DMICA_MASKING={}", masking_ == Masking::exact ? 2 : 1), device.wave_form(),
+                     fmt::format("-DMICA_MASKING={}", masking_ == Masking::exact ? 2 : 1), wave_form,
                      kBatchQueries, kAnswers);
   }
   build_seconds_ = watch_.seconds();
@@ -124,9 +125,10 @@ std::vector<BeckmannBrdf::Parts> BeckmannBrdf::patch_parts(const std::vector<Brd
   });
   const std::vector<float> answers = patches_->start(std::move(patch_queries))->wait();
   std::vector<Parts> parts(queries.size());
-  for (std::size_t n = 0; n < queries.size(); ++n)
+  tbb::parallel_for(std::size_t{0}, queries.size(), [&](std::size_t n) {
     parts[n] = {answers[kAnswers * n], answers[kAnswers * n + 1], answers[kAnswers * n + 2],
                 answers[kAnswers * n + 3]};
+  });
   return parts;
 }
 
@@ -144,12 +146,12 @@ std::vector<BrdfValue> BeckmannBrdf::evaluate(const std::vector<BrdfQuery>& quer
   }
   const std::vector<Parts> all = parts(visible);
   std::vector<BrdfValue> values(queries.size());
-  for (std::size_t n = 0; n < places.size(); ++n) {
+  tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t n) {
     const Eigen::Vector3d half = half_vector(visible[n]);
     const double areas = std::max(all[n].view_area * all[n].light_area, kLeastAreas);
     values[places[n]].single = static_cast<float>(all[n].density * visible[n].light.z() / (4 * areas));
     values[places[n]].pdf = static_cast<float>(all[n].density * half.z() / (4 * visible[n].view.dot(half)));
-  }
+  });
   return values;
 }
 

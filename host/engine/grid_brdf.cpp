@@ -1,5 +1,6 @@
 #include "host/engine/grid_brdf.h"
 
+#include <tbb/parallel_for.h>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -70,6 +71,8 @@ std::vector<float> GridBrdf::draw_densities(const std::vector<Query>& queries) {
     const std::size_t count = std::min(batch_queries_, queries.size() - first);
     const std::vector<float> batch =
         run(&draw_density_, to_grid_batch(queries, first, count, point_), count, 1).front();
+    if (!std::all_of(batch.begin(), batch.end(), [](float density) { return std::isfinite(density); }))
+      throw DeviceError("evaluating grid_brdf: a density of draws is not finite");
     densities.insert(densities.end(), batch.begin(), batch.end());
   }
   return densities;
@@ -87,14 +90,14 @@ std::vector<BrdfValue> GridBrdf::evaluate(const std::vector<BrdfQuery>& queries)
   }
   if (places.empty()) return values;
   const std::vector<float> densities = densities_.evaluate(seen), drawn = draw_densities(seen);
-  for (std::size_t n = 0; n < places.size(); ++n) {
+  tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t n) {
     const BrdfQuery& query = queries[places[n]];
     const Eigen::Vector3d half = (query.view + query.light).normalized();
     const double G = glint_masking(glints_, glints_.alpha, query.view, query.light);
     BrdfValue& value = values[places[n]];
     value.single = static_cast<float>(densities[n] * G / (4 * query.view.z()));  // [Kem25] Eq. 1, times i.g
     value.pdf = static_cast<float>(drawn[n] * half.z() / (4 * query.view.dot(half)));  // of h, then of i
-  }
+  });
   return values;
 }
 

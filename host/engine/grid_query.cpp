@@ -1,12 +1,14 @@
 #include "host/engine/grid_query.h"
 
 #include <fmt/format.h>
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <tuple>
 
 namespace mica {
 namespace {
@@ -25,6 +27,10 @@ bool outside(double value, double low, double high) {
 class Column {
  public:
   Column(GridBatch* batch, std::size_t n) : batch_(batch), n_(n) {}
+  void copy_previous() {
+    for (std::size_t field = 0; field < MICA_GLINT_FIELDS; ++field)
+      batch_->fields[field * batch_->pitch + n_] = batch_->fields[field * batch_->pitch + n_ - 1];
+  }
   void set(int field, std::int32_t value) { batch_->fields[field * batch_->pitch + n_] = value; }
   void set(int field, double value) {
     const float single = static_cast<float>(value);
@@ -44,7 +50,8 @@ void set_cell(Column* column, int cell_field, int fraction_field, double cells) 
   column->set(fraction_field, std::min(cells - whole, 1 - 0x1p-24));
 }
 
-void set_query(const Query& query, const GlintPoint& glints, Column* column) {
+/// All but the half vector.
+void set_footprint(const Query& query, const GlintPoint& glints, Column* column) {
   // From uv to cells of level 0: A* with determinant one, then the resolution [Kem25 Algorithm 1].
   const double resolution = std::sqrt(double{glints.density}), stretch = std::sqrt(double{glints.stretch});
   const Eigen::Vector2d scale(resolution / stretch, resolution * stretch);
@@ -76,8 +83,6 @@ void set_query(const Query& query, const GlintPoint& glints, Column* column) {
   column->set(MICA_GLINT_WHITEN_2Y, std::cos(angle) * inverse_minor);
   column->set(MICA_GLINT_LEVEL, level);
   column->set(MICA_GLINT_WEIGHT, 1 - (detail - level));
-  column->set(MICA_GLINT_HALF_S, query.half_vector.x());
-  column->set(MICA_GLINT_HALF_T, query.half_vector.y());
   column->set(MICA_GLINT_INVERSE_ALPHA_X, 1.0 / glints.alpha_x);
   column->set(MICA_GLINT_INVERSE_ALPHA_Y, 1.0 / glints.alpha_y);
   column->set(MICA_GLINT_MICRO_S, query.roughness / stretch);
@@ -86,6 +91,18 @@ void set_query(const Query& query, const GlintPoint& glints, Column* column) {
   column->set(MICA_GLINT_SHARE, double{glints.share});
   column->set(MICA_GLINT_PRESENCE, double{glints.share} * glints.kept);
   column->set(MICA_GLINT_BRIGHTNESS, 1.0 / glints.kept);
+}
+
+/// Whether two queries differ at most in their half vectors, as those of one footprint to many lights do.
+bool share_footprint(const Query& a, const Query& b) {
+  return a.footprint.mean_uv == b.footprint.mean_uv && a.footprint.cov_uv == b.footprint.cov_uv &&
+         a.roughness == b.roughness;
+}
+bool are_same(const GlintPoint& a, const GlintPoint& b) {
+  const auto members = [](const GlintPoint& p) {
+    return std::tie(p.distribution, p.alpha_x, p.alpha_y, p.density, p.stretch, p.share, p.kept, p.seed);
+  };
+  return members(a) == members(b);
 }
 
 }  // namespace
@@ -129,10 +146,26 @@ GridBatch to_grid_batch(const std::vector<Query>& queries, std::size_t first, st
   GridBatch batch;
   batch.pitch = (count + MICA_GLINT_PADDING - 1) / MICA_GLINT_PADDING * MICA_GLINT_PADDING;
   batch.fields.resize(MICA_GLINT_FIELDS * batch.pitch);
-  tbb::parallel_for(std::size_t{0}, batch.pitch, [&](std::size_t n) {
-    Column column(&batch, n);
-    const GlintPoint& glints = points.size() == 1 || n >= count ? points.front() : points[first + n];
-    set_query(n < count ? queries[first + n] : Query(), glints, &column);
+  const Query padding;
+  const auto query_of = [&](std::size_t n) -> const Query& {
+    return n < count ? queries[first + n] : padding;
+  };
+  const auto glints_of = [&](std::size_t n) -> const GlintPoint& {
+    return points.size() == 1 || n >= count ? points.front() : points[first + n];
+  };
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, batch.pitch), [&](const auto& range) {
+    for (std::size_t n = range.begin(); n < range.end(); ++n) {
+      const Query& query = query_of(n);
+      Column column(&batch, n);
+      if (n > range.begin() && share_footprint(query, query_of(n - 1)) &&
+          are_same(glints_of(n), glints_of(n - 1))) {
+        column.copy_previous();
+      } else {
+        set_footprint(query, glints_of(n), &column);
+      }
+      column.set(MICA_GLINT_HALF_S, query.half_vector.x());
+      column.set(MICA_GLINT_HALF_T, query.half_vector.y());
+    }
   });
   return batch;
 }

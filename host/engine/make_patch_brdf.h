@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,7 @@ struct PatchBrdfSettings {
   int elements = 1;  ///< of a mixture, or seeds of cavities, a texel and axis
   Compensation compensation = Compensation::diffuse;  ///< of cavities
   LostEnergy energy = LostEnergy::exact;              ///< of cavities
+  std::optional<WaveForm> wave_form = {};             ///< of beckmanns; default: what suits the device
 };
 
 /// Names that `make_patch_brdf` takes.

@@ -141,17 +141,21 @@ device_types::mica_map_query to_map_query(const Query& query, const device_types
 }
 
 double sum_of_weights(const Eigen::Matrix2d& cov_spacings, const Eigen::Vector2d& mean_spacings) {
-  constexpr int orders = 2;  // the third one's terms are below exp(-2 pi^2 9 k) = 1e-14
-  double sum = 0;
-  for (int a = -orders; a <= orders; ++a) {
-    for (int b = -orders; b <= orders; ++b) {
-      const Eigen::Vector2d wave(a, b);
-      const double exponent = 2 * kPi * kPi * wave.dot(cov_spacings * wave);
-      if (exponent < 40)
-        sum += std::exp(-exponent) * std::cos(2 * kPi * wave.dot(Eigen::Vector2d(0.5, 0.5) - mean_spacings));
+  constexpr int orders = 2;      // the third one's terms are below exp(-2 pi^2 9 k) = 1e-14
+  constexpr double nothing = 20;  // exp(-20) = 2e-9 of the sum
+  const double a = cov_spacings(0, 0), b = cov_spacings(0, 1), c = cov_spacings(1, 1);
+  const double least_variance = 0.5 * (a + c) - std::hypot(0.5 * (a - c), b);
+  if (2 * kPi * kPi * least_variance > nothing) return 1;  // of every wave: |(x, y)| >= 1
+  const double phase_x = 2 * kPi * (0.5 - mean_spacings.x()), phase_y = 2 * kPi * (0.5 - mean_spacings.y());
+  // Waves come in pairs of equal terms, (x, y) and (-x, -y).
+  double half_sum = 0;
+  for (int x = 0; x <= orders; ++x) {
+    for (int y = x == 0 ? 1 : -orders; y <= orders; ++y) {
+      const double exponent = 2 * kPi * kPi * (a * x * x + 2 * b * x * y + c * y * y);
+      if (exponent < nothing) half_sum += std::exp(-exponent) * std::cos(x * phase_x + y * phase_y);
     }
   }
-  return sum;
+  return 1 + 2 * half_sum;
 }
 
 device_types::mica_mixture_query to_mixture_query(const Query& query, const device_types::mica_map_grid& grid,

@@ -35,8 +35,13 @@ device_types::mica_slope_footprint to_slope_footprint(const LobeWeights& weights
   const auto kernel = [&](const SlopeLevel& level) {
     return level.width == grid.width && level.height == grid.height ? k : kCellVariance;
   };
+  // (kernel + least) (size / cells)^2 <= smallest, both ways and without a division: every query asks every
+  // level.
+  const double width2 = static_cast<double>(grid.width) * grid.width,
+               height2 = static_cast<double>(grid.height) * grid.height;
   const auto fits = [&](const SlopeLevel& level) {
-    return (kernel(level) + least_variance) * spacing(level, grid).square().maxCoeff() <= smallest;
+    const double need = kernel(level) + least_variance, w = level.width, h = level.height;
+    return need * width2 <= smallest * w * w && need * height2 <= smallest * h * h;
   };
   auto level = std::find_if(levels.rbegin(), levels.rend(), fits);
   if (level == levels.rend()) {

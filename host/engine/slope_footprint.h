@@ -10,7 +10,7 @@ namespace mica {
 
 /// Variance, in spacings^2, that the weights of a pyramid's cells need at least: their sums then ripple by
 /// 2 exp(-2 pi^2 variance).
-constexpr double kSmallRipple = 0.5;    ///< 1e-4
+constexpr double kSmallRipple = 0.49;   ///< 1.3e-4; footprints from 2 texels up have it on the second level
 constexpr double kMiddleRipple = 0.26;  ///< 1e-2
 
 /// A footprint on the coarsest level that lets its cells have such weights. Where all are too coarse, the

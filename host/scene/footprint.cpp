@@ -29,7 +29,8 @@ Eigen::Matrix2d uv_differentials(const CameraRay& ray, const Hit& hit) {
 
 Eigen::Matrix2d footprint_covariance(const Eigen::Matrix2d& duv, double sigma_pixels) {
   constexpr double max_condition = 1e4, min_variance = 1e-14;
-  const Eigen::Matrix2d covariance = sigma_pixels * sigma_pixels * duv * duv.transpose();
+  Eigen::Matrix2d covariance = sigma_pixels * sigma_pixels * duv * duv.transpose();
+  covariance(1, 0) = covariance(0, 1);  // to the last bit
   const double cuu = covariance(0, 0), cuv = covariance(0, 1), cvv = covariance(1, 1);
   const double major = (cuu + cvv) / 2 + std::hypot((cuu - cvv) / 2, cuv);
   // By the determinant of duv: that of the covariance loses the minor axis of a long footprint to
@@ -42,8 +43,11 @@ Eigen::Matrix2d footprint_covariance(const Eigen::Matrix2d& duv, double sigma_pi
   const double bounded_major = std::clamp(major, bounded_minor, max_condition * bounded_minor);
   Eigen::Vector2d axis = cuu > cvv ? Eigen::Vector2d(major - cvv, cuv) : Eigen::Vector2d(cuv, major - cuu);
   if (axis.squaredNorm() > 0) axis.normalize();
-  return bounded_minor * Eigen::Matrix2d::Identity() +
-         (bounded_major - bounded_minor) * axis * axis.transpose();
+  const Eigen::Vector2d longer = (bounded_major - bounded_minor) * axis;
+  const double across = longer.x() * axis.y();  // once: the other way around it would be rounded differently
+  Eigen::Matrix2d bounded;
+  bounded << bounded_minor + longer.x() * axis.x(), across, across, bounded_minor + longer.y() * axis.y();
+  return bounded;
 }
 
 }  // namespace mica

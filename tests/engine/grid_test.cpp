@@ -207,13 +207,11 @@ Mean mean_ratio(Device* device, const GlintGrid& grid, double sigma_cells, doubl
 
 TEST_P(Grid, IsTheSmoothDistributionOnAverage) {
   // Footprints of many cells, where a mean over 2^20 of them is sharp, and lobes that are far from the rim.
-  for (const double alpha : {0.1, 0.3, 0.8}) {
-    for (const double density : {1e3, 1e5, 1e8}) {
-      const GlintGrid grid = grid_of(GetParam(), alpha, density);
-      const Mean mean = mean_ratio(&device_, grid, 3, 0.5, 0.1 * alpha, 1 << 20);
-      EXPECT_LE(mean.error, 0.003) << alpha << " " << density;
-      EXPECT_NEAR(mean.mean, 1, 0.01) << alpha << " " << density;
-    }
+  const std::pair<double, double> corners[] = {{0.1, 1e3}, {0.1, 1e8}, {0.3, 1e5}, {0.8, 1e3}, {0.8, 1e8}};
+  for (const auto& [alpha, density] : corners) {
+    const Mean mean = mean_ratio(&device_, grid_of(GetParam(), alpha, density), 3, 0.5, 0.1 * alpha, 1 << 20);
+    EXPECT_LE(mean.error, 0.003) << alpha << " " << density;
+    EXPECT_NEAR(mean.mean, 1, 0.01) << alpha << " " << density;
   }
 }
 

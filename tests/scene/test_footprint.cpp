@@ -102,5 +102,14 @@ TEST(FootprintCovariance, LengthensVanishingAxes) {
   EXPECT_NEAR(axes.eigenvalues()[1] / 1e-10, 1, 1e-3);
 }
 
+// The oracle takes nothing less, and the audit of a picture with a horizon asks it.
+TEST(FootprintCovariance, IsSymmetricToTheLastBit) {
+  for (int n = 0; n < 200; ++n) {
+    const double minor = n % 2 ? 1e-3 : 0.3;  // bounded, and not
+    const Matrix2d covariance = footprint_covariance(differentials(1 + 0.07 * n, minor, 0.031 * n), 0.37);
+    ASSERT_EQ(covariance(0, 1), covariance(1, 0)) << n;
+  }
+}
+
 }  // namespace
 }  // namespace mica
