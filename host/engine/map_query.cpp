@@ -12,6 +12,7 @@ namespace mica {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
+constexpr double kUniformVariance = 0.8 * 0.8;  // of a footprint that sees all of the map alike, periods^2
 constexpr double kMinRoughness = 1e-5, kMaxRoughness = 1;
 constexpr double kMinSigmaTexels = 1e-3, kMaxSigmaTexels = 1e6;
 
@@ -59,7 +60,7 @@ void wrap_texel(double coordinate, int size, double shift, std::int32_t* whole, 
 /// the mean. One that is long only one way, and still sees waves across it, becomes as short as keeps just
 /// those: 0.8 periods of the lattice line along it.
 Footprint without_needless_periods(const Footprint& footprint) {
-  constexpr double uniform_variance = 0.8 * 0.8;
+  constexpr double uniform_variance = kUniformVariance;
   const Eigen::Matrix2d waves = reduced_waves(footprint.cov_uv);
   const Eigen::Matrix2d form = waves.transpose() * footprint.cov_uv * waves;
   if (form(1, 1) <= uniform_variance) return footprint;
@@ -137,6 +138,25 @@ device_types::mica_map_query to_map_query(const Query& query, const device_types
   result.cutoff = static_cast<float>(cutoff);
   result.scale = static_cast<float>(1 / (4 * kPi * kPi * axes.sigma_major_texels * axes.sigma_minor_texels *
                                          query.roughness * query.roughness));
+  return result;
+}
+
+device_types::mica_map_query to_triangle_query(const Query& query, const device_types::mica_map_grid& grid,
+                                               Interpolation interpolation, double cutoff) {
+  device_types::mica_map_query result = to_map_query(query, grid, interpolation, cutoff);
+  const Eigen::Matrix2d& cov = query.footprint.cov_uv;
+  const Eigen::Vector2d shortest = reduced_waves(cov).col(0);
+  if (shortest.dot(cov * shortest) <= kUniformVariance) return result;
+  // From the first texel to the last, under a Gaussian so wide that it is a constant.
+  constexpr double sigma_periods = 300;  // at the corners the weight is 3e-6 less
+  const double width = grid.width, height = grid.height;
+  result.mean_i = result.mean_j = 0;
+  result.mean_x = static_cast<float>(width / 2), result.mean_y = static_cast<float>(height / 2);
+  result.extent_x = result.mean_x - 0.25f, result.extent_y = result.mean_y - 0.25f;
+  result.whiten_1x = static_cast<float>(1 / (sigma_periods * width));
+  result.whiten_2y = static_cast<float>(1 / (sigma_periods * height));
+  result.whiten_1y = result.whiten_2x = 0;
+  result.scale = static_cast<float>(1 / (2 * kPi * width * height * query.roughness * query.roughness));
   return result;
 }
 

@@ -40,6 +40,11 @@ double sum_of_weights(const Eigen::Matrix2d& cov_spacings, const Eigen::Vector2d
 device_types::mica_map_query to_map_query(const Query& query, const device_types::mica_map_grid& grid,
                                           Interpolation interpolation, double cutoff);
 
+/// The same for triangles, which need no footprint to go by where it is many periods wide: those of one
+/// period count once.
+device_types::mica_map_query to_triangle_query(const Query& query, const device_types::mica_map_grid& grid,
+                                               Interpolation interpolation, double cutoff);
+
 /// The query of a mixture whose elements lie `1 / elements` texels apart. The weights of the elements under
 /// the footprint are normalised: they sum to one, as those of the published position kernel do not. [Che18]
 /// sec. 4.1.

@@ -135,6 +135,23 @@ double mebibytes(std::size_t bytes) {
   return static_cast<double>(bytes) / (1 << 20);
 }
 
+/// The audit and the channel `ndf.Y` are of densities, which lights that are multiplied with a BRDF never ask
+/// for.
+std::vector<std::string> missing_densities(const Job& job, const Plan& plan) {
+  std::vector<std::string> asked, warnings;
+  if (job.audit.samples > 0) asked.emplace_back("[audit]");
+  if (std::find(plan.channels.begin(), plan.channels.end(), "ndf.Y") != plan.channels.end())
+    asked.emplace_back("the AOV ndf");
+  if (asked.empty()) return warnings;
+  for (const PlannedEvaluator& e : plan.evaluators)
+    if (e.patch_brdf && !e.asks_densities)
+      warnings.push_back(fmt::format(
+          "{} {} nothing of material {}: its light is that of the BRDF of {}, and not of a density",
+          fmt::join(asked, " and "), asked.size() > 1 ? "see" : "sees", fmt::join(e.materials, ", "),
+          e.evaluator));
+  return warnings;
+}
+
 }  // namespace
 
 Plan make_plan(const Job& job) {
@@ -152,6 +169,7 @@ Plan make_plan(const Job& job) {
 
   plan.channels = channels_for(job.image.aovs);
   check_estimates(plan);
+  plan.warnings = missing_densities(job, plan);
   plan.queries_a_batch = kQueriesABatch;
   const std::size_t queries_a_row = static_cast<std::size_t>(job.image.width) * job.image.subpixels *
                                     job.image.subpixels *
@@ -195,6 +213,7 @@ std::string describe(const Plan& plan) {
                       plan.queries_a_batch);
   text += fmt::format("memory {:.0f} MiB on the device, {:.0f} MiB on the host\n",
                       mebibytes(plan.device_bytes), mebibytes(plan.host_bytes));
+  for (const std::string& warning : plan.warnings) text += warning + '\n';
   return text;
 }
 

@@ -42,6 +42,7 @@ struct Plan {
   int rows_a_block = 0;                          ///< image rows that are traced and evaluated together
   std::size_t queries_a_batch = 0;               ///< of one kernel launch, at most
   std::size_t host_bytes = 0, device_bytes = 0;  ///< estimates of the whole
+  std::vector<std::string> warnings;             ///< what the job asks for and will not get
 };
 
 /// Derives the plan from the job; map files are opened for their size only. Throws FileError.

@@ -22,7 +22,7 @@ TriangleEvaluator::TriangleEvaluator(Device& device, const Surface& surface, con
 std::unique_ptr<PendingDensities> TriangleEvaluator::start(const std::vector<Query>& queries) {
   std::vector<device_types::mica_map_query> map_queries(queries.size());
   tbb::parallel_for(std::size_t{0}, queries.size(), [&](std::size_t n) {
-    map_queries[n] = to_map_query(queries[n], batches_->grid(), interpolation_, cutoff_);
+    map_queries[n] = to_triangle_query(queries[n], batches_->grid(), interpolation_, cutoff_);
   });
   return batches_->start(std::move(map_queries));
 }

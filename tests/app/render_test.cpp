@@ -70,6 +70,13 @@ TEST_F(RenderCommand, WritesThePictureItsPreviewAndWhatItDid) {
   EXPECT_GT(json["queries"], 0);
 }
 
+/// A patch's BRDF is no density: the plan says what will be missing, and only then.
+TEST_F(RenderCommand, SaysWhereTheAuditSeesNothing) {
+  const std::string missing = "[audit] and the AOV ndf see nothing of material metal";
+  EXPECT_EQ(mica("check job.toml").out.find(missing), std::string::npos);
+  EXPECT_NE(mica("check job.toml --set material.metal.ndf=beckmanns").out.find(missing), std::string::npos);
+}
+
 TEST_F(RenderCommand, GivesTheSameBytesEachTime) {
   ASSERT_EQ(mica("render job.toml -o a.exr --quiet").code, 0);
   ASSERT_EQ(mica("render job.toml -o b.exr --quiet").code, 0);

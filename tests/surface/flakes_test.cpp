@@ -82,7 +82,7 @@ TEST(Flakes, KeepTheirDistance) {
     four_fold += std::pow(direction, 4);
   }
   const auto count = static_cast<double>(pairs.size());
-  EXPECT_NEAR(sum / count / flake_size, 1, 0.03);
+  EXPECT_NEAR(sum / count / flake_size, 1, 0.01);
   EXPECT_GT(least, 0.7 * flake_size);  // Poisson disk: random points would come arbitrarily close
   EXPECT_LT(std::abs(two_fold) / count, 4 / std::sqrt(count));
   EXPECT_LT(std::abs(four_fold) / count, 4 / std::sqrt(count));
