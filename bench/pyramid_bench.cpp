@@ -1,12 +1,15 @@
 // `pyramid` and `auto` on 2048^2 maps: error, speed, memory and build over footprints of 1 to 4096 texels,
 // against the best fixed evaluator that keeps 1%, random footprints, in one run; and a zoom. Prints a table.
 // Errors are relative L2 against `triangles`, which keeps 1e-4 of the oracle.
-//   pyramid_bench [SURFACE... | FILE.exr...] [--quick]
+//   pyramid_bench [SURFACE... | FILE...] [--quick] [--errors | --costs]
+// --errors times nothing; --costs prints what the cost model of `auto` is made of.
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
+#include <numeric>
 
 #include "host/base/error.h"
 #include "host/base/stopwatch.h"
@@ -14,6 +17,7 @@
 #include "host/engine/accuracy.h"
 #include "host/engine/auto_evaluator.h"
 #include "host/engine/make_evaluator.h"
+#include "host/engine/mixture_evaluator.h"
 #include "host/engine/pyramid_evaluator.h"
 #include "host/engine/triangle_evaluator.h"
 #include "host/surface/random.h"
@@ -115,12 +119,71 @@ Row best_fixed(Device& device, const Surface& surface, Evaluator* triangles,
   return row;
 }
 
-void measure(Device& device, const std::string& name, double roughness, bool quick) {
+/// What `auto` is off by that was asked for 0.1%.
+double strict_auto_error(Device& device, const Surface& surface, const std::vector<Query>& queries,
+                         const std::vector<Query>& few, const std::vector<float>& expected) {
+  AutoEvaluator chooser(device, surface, 0.001);
+  chooser.calibrate(thinned(queries, 1024));
+  return error_of(&chooser, few, expected);
+}
+
+/// Nanoseconds of one core that a query takes.
+double core_nanoseconds(Evaluator* evaluator, const std::vector<Query>& queries) {
+  evaluator->evaluate(thinned(queries, 64));
+  std::vector<double> seconds;
+  for (int repeat = 0; repeat < kRepeats; ++repeat) {
+    const std::clock_t start = std::clock();
+    evaluator->evaluate(queries);
+    seconds.push_back(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
+  }
+  return 1e9 * timing_of(seconds).median_seconds / static_cast<double>(queries.size());
+}
+
+double mean_count(Evaluator* counter, const std::vector<Query>& queries) {
+  const std::vector<float> counts = counter->evaluate(queries);
+  return std::accumulate(counts.begin(), counts.end(), 0.0) / static_cast<double>(counts.size());
+}
+
+/// What a query and one count of its kernel cost, of every evaluator that `auto` may choose: to fit its cost
+/// model to.
+void print_costs(Device& device, const std::string& name, double roughness) {
+  const Surface surface = make_named(name);
+  const auto print = [&](const std::string& evaluator, Evaluator* timed, Evaluator* counter) {
+    for (const double sigma : {1.0, 2.0, 4.0, 8.0, 16.0, 32.0}) {
+      const std::size_t count = sigma > 8 ? 1 << 10 : 1 << 13;
+      const std::vector<Query> queries = random_queries(surface, sigma, roughness, count);
+      fmt::print("{:<10} {:>5} {:>3}  {:<12} {:>10.0f} ns {:>10.0f} counts\n", name, roughness, sigma,
+                 evaluator, core_nanoseconds(timed, queries), mean_count(counter, queries));
+      std::fflush(stdout);
+    }
+  };
+  TriangleSettings triangles;
+  TriangleEvaluator timed_triangles(device, surface, triangles);
+  triangles.count_flops = true;
+  TriangleEvaluator counting_triangles(device, surface, triangles);
+  print("triangles", &timed_triangles, &counting_triangles);
+  for (const int elements : {1, 2, 4}) {
+    MixtureSettings mixture;
+    mixture.elements = elements;
+    GaussianEvaluator timed(device, surface, mixture);
+    mixture.count_elements = true;
+    GaussianEvaluator counting(device, surface, mixture);
+    print(fmt::format("gaussians {}", elements), &timed, &counting);
+  }
+}
+
+struct Effort {
+  bool quick = false;  ///< few footprints
+  bool timed = true;
+  bool costs = false;  ///< nothing but these
+};
+
+void measure(Device& device, const std::string& name, double roughness, const Effort& effort) {
   const Surface surface = make_named(name);
   TriangleEvaluator triangles(device, surface);
   PyramidEvaluator pyramid(device, surface);
-  std::vector<double> sigmas = {1, 2, 4, 8, 16, 32, 64, 128, 512, 4096};
-  if (quick) sigmas = {8, 32, 128, 512};
+  std::vector<double> sigmas = {1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096};
+  if (effort.quick) sigmas = {8, 32, 128, 512};
   for (const double sigma : sigmas) {
     const std::vector<Query> queries = random_queries(surface, sigma, roughness, 1 << 16);
     const std::vector<Query> few = thinned(queries, sigma > 64 ? 2048 : 512);
@@ -129,13 +192,17 @@ void measure(Device& device, const std::string& name, double roughness, bool qui
     AutoEvaluator chooser(device, surface, 0.01);
     chooser.calibrate(thinned(queries, 1024));
     const double auto_error = error_of(&chooser, few, expected);
-    const double pyramid_rate = rate(&pyramid, queries), auto_rate = rate(&chooser, queries);
-    const Row fixed = best_fixed(device, surface, &triangles, queries, few, expected);
+    const double strict_error = strict_auto_error(device, surface, queries, few, expected);
+    const double pyramid_rate = effort.timed ? rate(&pyramid, queries) : 0,
+                 auto_rate = effort.timed ? rate(&chooser, queries) : 0;
+    const Row fixed =
+        effort.timed ? best_fixed(device, surface, &triangles, queries, few, expected) : Row{"-", 1};
     fmt::print(
-        "{:<10} {:>5} {:>5}  {:>8.3f}% {:>10.0f}  {:>8.3f}% {:>10.0f} {:>6.1f} MiB {:>7.2f}x  {:<12} {}\n",
+        "{:<10} {:>5} {:>5}  {:>8.3f}% {:>10.0f}  {:>8.3f}% {:>10.0f} {:>6.1f} MiB {:>7.2f}x  {:>8.4f}%  "
+        "{:<12} {}\n",
         name, roughness, sigma, 100 * pyramid_error, pyramid_rate, 100 * auto_error, auto_rate,
         static_cast<double>(chooser.device_bytes()) / (1 << 20), auto_rate / fixed.best_rate,
-        fixed.best_fixed, chooser.choices().front().evaluator);
+        100 * strict_error, fixed.best_fixed, chooser.choices().front().evaluator);
     std::fflush(stdout);
   }
   fmt::print("{:<10} {:>5} all   built in {:.2f} s, {:.1f} MiB with the texels\n", name, roughness,
@@ -175,15 +242,20 @@ void zoom(Device& device, const std::string& name, double roughness) {
       name, roughness, 100 * *most, worst);
 }
 
-int run(std::vector<std::string> names, bool quick) {
+int run(std::vector<std::string> names, const Effort& effort) {
   Device device(0);
   if (names.empty()) names = {"spectrum", "brushed", "flakes", "scratches"};
+  if (effort.costs) {
+    for (const std::string& name : names)
+      for (const double roughness : {0.02, 0.005}) print_costs(device, name, roughness);
+    return 0;
+  }
   fmt::print("device {}; random footprints, wall clock, median of {}\n", device.info().name, kRepeats);
-  fmt::print("{:<10} {:>5} {:>5}  {:>9} {:>10}  {:>9} {:>10} {:>10} {:>8}  {:<12} {}\n", "surface", "rough",
-             "sigma", "pyramid", "queries/s", "auto 1%", "queries/s", "memory", "of best", "best fixed",
-             "auto's choice");
+  fmt::print("{:<10} {:>5} {:>5}  {:>9} {:>10}  {:>9} {:>10} {:>10} {:>8}  {:>9}  {:<12} {}\n", "surface",
+             "rough", "sigma", "pyramid", "queries/s", "auto 1%", "queries/s", "memory", "of best",
+             "auto 0.1%", "best fixed", "auto's choice");
   for (const std::string& name : names)
-    for (const double roughness : {0.02, 0.005}) measure(device, name, roughness, quick);
+    for (const double roughness : {0.02, 0.005}) measure(device, name, roughness, effort);
   for (const std::string& name : names) zoom(device, name, 0.02);
   return 0;
 }
@@ -194,10 +266,17 @@ int run(std::vector<std::string> names, bool quick) {
 int main(int argc, char** argv) {
   try {
     std::vector<std::string> names(argv + 1, argv + argc);
-    const auto quick = std::remove(names.begin(), names.end(), "--quick");
-    const bool is_quick = quick != names.end();
-    names.erase(quick, names.end());
-    return mica::bench::run(names, is_quick);
+    const auto taken = [&names](const char* option) {
+      const auto found = std::remove(names.begin(), names.end(), option);
+      const bool given = found != names.end();
+      names.erase(found, names.end());
+      return given;
+    };
+    mica::bench::Effort effort;
+    effort.quick = taken("--quick");
+    effort.timed = !taken("--errors");
+    effort.costs = taken("--costs");
+    return mica::bench::run(names, effort);
   } catch (const mica::Error& error) {
     fmt::print(stderr, "pyramid_bench: {}\n", error.what());
     return static_cast<int>(error.code());

@@ -27,7 +27,7 @@ set(compile_kernel ${CLANG} -x cl -cl-std=CL1.2 -fsyntax-only -Wall -Wextra -Wer
 set(kernel_stamps)
 foreach(file ${kernel_programs} ${kernel_headers})
   get_filename_component(name ${file} NAME)
-  if(name MATCHES "^(catmull_rom|texel_quads|walk_leaves)\\.h$")
+  if(name MATCHES "^(catmull_rom|texel_quads|walk_leaves|walk_records)\\.h$")
     continue()  # parts of the kernels that include them, whose types they use
   endif()
   set(commands)

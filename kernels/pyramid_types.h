@@ -46,24 +46,16 @@ enum {
   MICA_ELEMENT_SS, MICA_ELEMENT_ST, MICA_ELEMENT_TT
 };
 
-// One level, as the kernel sees it.
-typedef struct {
-  MICA_INT width, height;       // of the map, texels
-  MICA_INT groups_x, groups_y;  // groups a period; the last ones may be cut
-  MICA_INT group_size;          // texels a side
-  MICA_FLOAT spread;            // largest sqrt(2 v) of a variance v of an element's position, texels
-} mica_pyramid_level;
-
 // One query in texel units.
 typedef struct {
   mica_map_query map;
   MICA_FLOAT cov_xx, cov_xy, cov_yy;   // the footprint's covariance, texels^2
   MICA_FLOAT inverse_minor_variance;   // 1 / its smaller eigenvalue
+  MICA_INT group_size;                 // of the level that it reads: texels a side
 } mica_pyramid_query;
 
 #ifdef __cplusplus
-static_assert(sizeof(mica_pyramid_level) == 24 && offsetof(mica_pyramid_level, spread) == 20);
-static_assert(sizeof(mica_pyramid_query) == 80 && offsetof(mica_pyramid_query, inverse_minor_variance) == 76);
+static_assert(sizeof(mica_pyramid_query) == 84 && offsetof(mica_pyramid_query, group_size) == 80);
 }  // namespace mica::device_types
 #endif
 

@@ -11,6 +11,7 @@
 #include "host/app/commands.h"
 #include "host/app/evaluation.h"
 #include "host/app/map_options.h"
+#include "host/app/ndf_images.h"
 #include "host/app/output.h"
 #include "host/app/query_table.h"
 #include "host/base/error.h"
@@ -42,33 +43,9 @@ Footprint footprint(const NdfOptions& options, const Surface& surface) {
   return result;
 }
 
-/// Half vectors at the centres of an image's pixels, t up.
-class DiskWindow {
- public:
-  DiskWindow(const std::vector<double>& window, int size)
-      : center_(window[0], window[1]), radius_(window[2]), size_(size) {}
-
-  Eigen::Vector2d half_vector(std::size_t pixel) const {
-    const auto at = [&](std::size_t index) { return (2 * static_cast<double>(index) + 1) / size_ - 1; };
-    const auto size = static_cast<std::size_t>(size_);
-    return center_ + radius_ * Eigen::Vector2d(at(pixel % size), -at(pixel / size));
-  }
-
-  /// Pixels inside the unit disk.
-  std::vector<std::size_t> pixels() const {
-    std::vector<std::size_t> inside;
-    for (std::size_t pixel = 0; pixel < static_cast<std::size_t>(size_) * size_; ++pixel)
-      if (half_vector(pixel).squaredNorm() < 1) inside.push_back(pixel);
-    return inside;
-  }
-
-  double pixel_area() const { return 4 * radius_ * radius_ / (static_cast<double>(size_) * size_); }
-
- private:
-  Eigen::Vector2d center_;
-  double radius_;
-  int size_;
-};
+ImageWindow window_of(const NdfOptions& options) {
+  return {{options.window[0], options.window[1]}, options.window[2], options.size};
+}
 
 /// Brings the 99.5th percentile of what is positive to 0.8, where the PNG's highlights begin to roll off.
 double preview_exposure(std::vector<float> values) {
@@ -96,8 +73,7 @@ void check(const NdfOptions& options) {
 }
 
 Image evaluate(const NdfOptions& options, const Surface& surface) {
-  const DiskWindow window(options.window, options.size);
-  const std::vector<std::size_t> pixels = window.pixels();
+  const ImageWindow window = window_of(options);
   Query query;
   query.footprint = footprint(options, surface);
   query.roughness = options.roughness;
@@ -105,19 +81,13 @@ Image evaluate(const NdfOptions& options, const Surface& surface) {
   if (!problem.empty()) throw UsageError(problem);
 
   const OpenEvaluator open = open_evaluator(options.ndf, {}, options.device, surface, options.elements);
-  const auto query_of = [&](std::size_t n) {
-    query.half_vector = window.half_vector(pixels[n]);
-    return query;
-  };
-  calibrate(open, surface, pixels.size(), query_of);
-  const std::vector<float> densities = evaluate_all(open.evaluator.get(), pixels.size(), query_of);
-
   Image image;
   image.width = image.height = options.size;
   image.channels = {"ndf.Y"};
-  image.pixels.resize(static_cast<std::size_t>(options.size) * options.size);
-  for (std::size_t n = 0; n < pixels.size(); ++n) image.pixels[pixels[n]] = densities[n];
-  const double share = std::accumulate(densities.begin(), densities.end(), 0.0) * window.pixel_area();
+  image.pixels = draw_images(
+      open, surface, 1, [&](std::size_t) { return query; }, window);
+  const double share =
+      std::accumulate(image.pixels.begin(), image.pixels.end(), 0.0) * window.step() * window.step();
   spdlog::info("the pixels hold {:.4g} of the normals (the sum of D over them, times a pixel's area)", share);
   image.metadata = {{"mica:version", version()},
                     {"mica:map", options.map.path},
@@ -137,34 +107,20 @@ int run_centers(const NdfOptions& options) {
   const Table centers = read_query_table(options.centers, {"u", "v", "roughness"});
   SurfaceReport report;
   const Surface surface = load_map(options.map, &report);
-  const DiskWindow window(options.window, options.size);
-  const std::vector<std::size_t> pixels = window.pixels();
   Query query;
   query.footprint = footprint(options, surface);
-  const auto take_center = [&](std::size_t row) {
+  const auto footprint_of = [&](std::size_t row) {
     query.footprint.mean_uv = {centers.at(row, 0), centers.at(row, 1)};
     query.roughness = centers.columns > 2 ? centers.at(row, 2) : options.roughness;
-  };
-  const auto query_of = [&](std::size_t n) {
-    take_center(n / pixels.size());
-    query.half_vector = window.half_vector(pixels[n % pixels.size()]);
     return query;
   };
   check_rows(options.centers, centers.rows, [&](std::size_t row) {
-    take_center(row);
-    return query_problem(query, surface.width(), surface.height());
+    return query_problem(footprint_of(row), surface.width(), surface.height());
   });
   const OpenEvaluator open = open_evaluator(options.ndf, {}, options.device, surface, options.elements);
-  const std::size_t count = centers.rows * pixels.size();
-  constexpr std::size_t looked_at = 1 << 16;  // by the calibration: the footprints are all of one size
-  const std::size_t stride = std::max<std::size_t>(count / looked_at, 1);
-  calibrate(open, surface, count / stride, [&](std::size_t n) { return query_of(n * stride); });
-  const std::vector<float> densities = evaluate_all(open.evaluator.get(), count, query_of);
-  const std::size_t columns = static_cast<std::size_t>(options.size) * options.size;
-  std::vector<float> images(centers.rows * columns);
-  for (std::size_t n = 0; n < count; ++n)
-    images[n / pixels.size() * columns + pixels[n % pixels.size()]] = densities[n];
-  write_file_atomically(options.output, to_npy(images, columns));
+  const ImageWindow window = window_of(options);
+  const std::vector<float> images = draw_images(open, surface, centers.rows, footprint_of, window);
+  write_file_atomically(options.output, to_npy(images, window.count()));
   return 0;
 }
 

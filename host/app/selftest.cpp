@@ -11,6 +11,7 @@
 #include "host/app/interrupt.h"
 #include "host/app/json_file.h"
 #include "host/app/output.h"
+#include "host/app/pyramid_checks.h"
 #include "host/app/selftest_tables.h"
 #include "host/engine/accuracy.h"
 #include "host/engine/make_evaluator.h"
@@ -142,6 +143,7 @@ int run(int device_index, double evaluations, const std::string& json_path) {
   take(check_special_functions(&device));
   take(check_evaluator("triangles", &device));
   take(check_gaussians(&device));
+  take(check_pyramid(&device));
   take(check_grid(&device));
 
   print_arithmetic(arithmetic);

@@ -71,16 +71,13 @@ void append_nodes(const std::vector<std::int16_t>& nodes, std::size_t children_b
 PyramidLevel flatten(const Surface& surface, double cell_width, BlockGrid* grid) {
   PyramidLevel level;
   const auto groups = [](int blocks) { return (blocks + MICA_GROUP_BLOCKS - 1) / MICA_GROUP_BLOCKS; };
-  level.shape = {surface.width(),
-                 surface.height(),
-                 groups(grid->columns),
-                 groups(grid->rows),
-                 grid->block * MICA_GROUP_BLOCKS,
-                 0};
-  std::vector<ElementTree> trees(static_cast<std::size_t>(level.shape.groups_x) * level.shape.groups_y);
+  level.shape.grid = {surface.width(), surface.height(), groups(grid->columns), groups(grid->rows)};
+  level.shape.group_size = grid->block * MICA_GROUP_BLOCKS;
+  std::vector<ElementTree> trees(static_cast<std::size_t>(level.shape.grid.blocks_x) *
+                                 level.shape.grid.blocks_y);
   tbb::parallel_for(std::size_t{0}, trees.size(), [&](std::size_t n) {
-    const int column = static_cast<int>(n % level.shape.groups_x) * MICA_GROUP_BLOCKS;
-    const int row = static_cast<int>(n / level.shape.groups_x) * MICA_GROUP_BLOCKS;
+    const int column = static_cast<int>(n % level.shape.grid.blocks_x) * MICA_GROUP_BLOCKS;
+    const int row = static_cast<int>(n / level.shape.grid.blocks_x) * MICA_GROUP_BLOCKS;
     std::vector<CellMoments> parts;
     for (int block = 0; block < MICA_GROUP_BLOCKS * MICA_GROUP_BLOCKS; ++block) {
       const std::vector<CellMoments>* part =
@@ -104,7 +101,7 @@ PyramidLevel flatten(const Surface& surface, double cell_width, BlockGrid* grid)
   }
   level.groups.push_back(static_cast<std::int32_t>(level.top_nodes.size() / MICA_PYRAMID_NODE_STRIDE));
   for (const std::vector<CellMoments>& part : grid->parts) level.elements += part.size();
-  level.shape.spread = static_cast<float>(std::sqrt(2 * variance));
+  level.shape.spread = std::sqrt(2 * variance);
   return level;
 }
 

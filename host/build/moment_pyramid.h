@@ -10,10 +10,17 @@
 
 namespace mica {
 
+/// How a level lies on its map.
+struct PyramidShape {
+  device_types::mica_map_grid grid{};  ///< the map, and in place of blocks the level's groups
+  int group_size = 0;                  ///< texels a side; the last groups may be cut
+  double spread = 0;                   ///< largest sqrt(2 v) of a variance v of an element's position, texels
+};
+
 /// A level of merged elements as the kernel reads it: one 4D Gaussian for each block of the map and cell of
 /// the normal disk that is not empty, in 16 bits a number.
 struct PyramidLevel {
-  device_types::mica_pyramid_level shape{};
+  PyramidShape shape;
   std::vector<std::int32_t> groups;  ///< index of each group's first top node, and of the one after the last
   std::vector<std::int16_t> top_nodes;  ///< MICA_PYRAMID_NODE_STRIDE each: bounds of sixteen nodes
   std::vector<std::int16_t> nodes;      ///< of sixteen records

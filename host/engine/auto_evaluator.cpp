@@ -18,6 +18,7 @@ namespace mica {
 namespace {
 
 constexpr double kFirstRoughness = 0.02;
+constexpr double kTrianglesError = 1e-4;  // what `triangles` are off by, at most
 
 enum class Method { pyramid, gaussians, triangles };
 
@@ -49,6 +50,12 @@ double bootstrap_bound(const std::vector<double>& squares, const std::vector<dou
   }
   std::sort(errors.begin(), errors.end());
   return errors[static_cast<std::size_t>(0.95 * resamples)];
+}
+
+double typical_density(const std::vector<float>& densities) {
+  double squares = 0, sum = 0;
+  for (const double density : densities) squares += density * density, sum += density;
+  return sum > 0 ? squares / sum : 0;
 }
 
 }  // namespace
@@ -147,8 +154,9 @@ AutoChoice AutoEvaluator::choose(const QueryClass& kind, const std::vector<Query
   constexpr std::size_t fewest_samples = 16;  // that a bound can be told from
   const std::size_t triangles = candidates_.size() - 1;
   const std::vector<float> expected = evaluator(&candidates_[triangles])->evaluate(sample);
-  AutoChoice best{kind, candidates_[triangles].label,        sample.size(), 0,
-                  1e-4, cost(candidates_[triangles], sample)};
+  AutoChoice best{kind, candidates_[triangles].label, sample.size(), 0, kTrianglesError};
+  best.typical_density = typical_density(expected);
+  best.cost = cost(candidates_[triangles], sample);
   candidate_of_[kind] = triangles;
   if (sample.size() < fewest_samples) return best;
   for (const Method method : {Method::pyramid, Method::gaussians}) {
@@ -157,6 +165,7 @@ AutoChoice AutoEvaluator::choose(const QueryClass& kind, const std::vector<Query
       if (candidate.method != method) continue;
       AutoChoice choice{kind, candidate.label, sample.size()};
       if (!keeps_tolerance(&candidate, sample, expected, &choice)) continue;
+      choice.typical_density = best.typical_density;
       choice.cost = cost(candidate, sample);
       if (choice.cost < best.cost) best = choice, candidate_of_[kind] = n;
       break;  // the next ones of this method cost more
@@ -181,7 +190,8 @@ bool AutoEvaluator::keeps_tolerance(Candidate* candidate, const std::vector<Quer
   const double reference = std::accumulate(references.begin(), references.end(), 0.0);
   if (!(reference > 0)) return false;
   choice->relative_l2 = std::sqrt(std::accumulate(squares.begin(), squares.end(), 0.0) / reference);
-  choice->upper_bound = bootstrap_bound(squares, references) + 1e-4;  // and what triangles are off by
+  choice->upper_bound =
+      bootstrap_bound(squares, references) + kTrianglesError;  // and what triangles are off by
   return choice->upper_bound <= tolerance_;
 }
 
@@ -190,6 +200,14 @@ double AutoEvaluator::cost(const Candidate& candidate, const std::vector<Query>&
   const CostModel model = cost_model(candidate.method, candidate.elements);
   return model.query + model.count * std::accumulate(counts.begin(), counts.end(), 0.0) /
                            static_cast<double>(counts.size());
+}
+
+double AutoEvaluator::error_estimate(const Query& query, double density) const {
+  const QueryClass kind = class_of(query, surface_.width(), surface_.height());
+  for (const AutoChoice& choice : choices_)
+    if (!(choice.kind < kind) && !(kind < choice.kind))
+      return choice.upper_bound * std::sqrt(density * std::max(density, choice.typical_density));
+  return kTrianglesError * density;  // which is who answers what was not sampled
 }
 
 Evaluator* AutoEvaluator::evaluator(Candidate* candidate) {

@@ -25,11 +25,12 @@ struct QueryClass {
 /// What `auto` chose for a class, and why.
 struct AutoChoice {
   QueryClass kind;
-  std::string evaluator;    ///< in words: "gaussians, 2 a texel and axis"
-  std::size_t samples = 0;  ///< queries that it was judged by
-  double relative_l2 = 0;   ///< of these
-  double upper_bound = 0;   ///< of the relative L2 of all queries of the class, at 95% confidence
-  double cost = 0;          ///< ns of one core that a query is estimated to take
+  std::string evaluator;       ///< in words: "gaussians, 2 a texel and axis"
+  std::size_t samples = 0;     ///< queries that it was judged by
+  double relative_l2 = 0;      ///< of these
+  double upper_bound = 0;      ///< of the relative L2 of all queries of the class, at 95% confidence
+  double typical_density = 0;  ///< sum of squares of the samples' densities over their sum
+  double cost = 0;             ///< ns of one core that a query is estimated to take
 };
 
 /// `auto`: for each class of a job's queries the cheapest evaluator that keeps a tolerance on a sample of
@@ -46,7 +47,12 @@ class AutoEvaluator : public Evaluator {
 
   /// Chooses for every class of the sample. Queries of other classes go to `triangles`.
   void calibrate(const std::vector<Query>& sample);
+  double tolerance() const { return tolerance_; }
   const std::vector<AutoChoice>& choices() const { return choices_; }
+
+  /// How far `density`, the answer to a query, may be off: the class's error at 95% confidence, of the
+  /// density where that is larger than is typical, and else of its geometric mean with the typical one.
+  double error_estimate(const Query& query, double density) const;
 
   std::unique_ptr<PendingDensities> start(const std::vector<Query>& queries) override;
   std::string name() const override { return "auto"; }

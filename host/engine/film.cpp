@@ -17,7 +17,8 @@ float* Film::channel(const std::string& name, std::size_t pixel) {
   return &image_.pixels[pixel * image_.channels.size() + (found - image_.channels.begin())];
 }
 
-void Film::add(const TracedRows& rows, const std::vector<float>& densities) {
+void Film::add(const TracedRows& rows, const std::vector<float>& densities,
+               const std::vector<float>& errors) {
   const std::size_t first_pixel = static_cast<std::size_t>(rows.first_row) * image_.width;
   const std::size_t stride = image_.channels.size();
   const std::size_t pixels = static_cast<std::size_t>(rows.row_count) * image_.width;
@@ -27,12 +28,13 @@ void Film::add(const TracedRows& rows, const std::vector<float>& densities) {
   };
 
   std::vector<Eigen::Vector3d> radiance(pixels);
-  std::vector<double> density_sum(pixels, 0.0);
+  std::vector<double> density_sum(pixels, 0.0), error_sum(pixels, 0.0);
   for (std::size_t pixel = 0; pixel < pixels; ++pixel) radiance[pixel] = rows.radiance[pixel].cast<double>();
   for (std::size_t n = 0; n < densities.size(); ++n) {
     const GlintQuery& glint = rows.queries[n];
     radiance[glint.pixel] += glint.weight.cast<double>() * static_cast<double>(densities[n]);
     density_sum[glint.pixel] += densities[n];
+    if (!errors.empty()) error_sum[glint.pixel] += errors[n];
   }
 
   const char* const colors[] = {"R", "G", "B"};
@@ -40,6 +42,9 @@ void Film::add(const TracedRows& rows, const std::vector<float>& densities) {
     write(colors[c], [&](std::size_t pixel) { return static_cast<float>(radiance[pixel][c]); });
   write("ndf.Y", [&](std::size_t pixel) {
     return static_cast<float>(density_sum[pixel] / std::max<int>(rows.query_count[pixel], 1));
+  });
+  write("error.Y", [&](std::size_t pixel) {
+    return static_cast<float>(error_sum[pixel] / std::max<int>(rows.query_count[pixel], 1));
   });
   write("uv.U", [&](std::size_t pixel) { return rows.uv[pixel].x(); });
   write("uv.V", [&](std::size_t pixel) { return rows.uv[pixel].y(); });

@@ -15,7 +15,9 @@ class Film {
 
   /// Adds a block of rows; `densities` in the order of its queries. Sums run in that order, in double
   /// precision.
-  void add(const TracedRows& rows, const std::vector<float>& densities);
+  /// @param errors estimates of the densities'; empty: there is no channel for them.
+  void add(const TracedRows& rows, const std::vector<float>& densities,
+           const std::vector<float>& errors = {});
 
   Image take() { return std::move(image_); }
 

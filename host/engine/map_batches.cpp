@@ -15,6 +15,7 @@ using device_types::mica_lobe_query;
 using device_types::mica_map_query;
 using device_types::mica_mixture_query;
 using device_types::mica_patch_query;
+using device_types::mica_pyramid_query;
 using device_types::mica_smooth_query;
 
 constexpr std::size_t kWaveLanes = 16;
@@ -42,6 +43,9 @@ mica_map_query& place_of(mica_cavity_query& query) {
 }
 mica_map_query& place_of(mica_patch_query& query) {
   return query.lobe.map;
+}
+mica_map_query& place_of(mica_pyramid_query& query) {
+  return query.map;
 }
 mica_map_query& place_of(mica_smooth_query& query) {
   return query.map;
@@ -203,6 +207,7 @@ template class MapBatches<mica_mixture_query>;
 template class MapBatches<mica_lobe_query>;
 template class MapBatches<mica_cavity_query>;
 template class MapBatches<mica_patch_query>;
+template class MapBatches<mica_pyramid_query>;
 template class MapBatches<mica_smooth_query>;
 
 }  // namespace mica

@@ -7,6 +7,7 @@
 #include "host/build/map_structure.h"
 #include "host/device/device.h"
 #include "host/engine/evaluator.h"
+#include "kernels/pyramid_types.h"
 #include "kernels/types.h"
 
 namespace mica {
@@ -58,6 +59,7 @@ extern template class MapBatches<device_types::mica_mixture_query>;
 extern template class MapBatches<device_types::mica_lobe_query>;
 extern template class MapBatches<device_types::mica_cavity_query>;
 extern template class MapBatches<device_types::mica_patch_query>;
+extern template class MapBatches<device_types::mica_pyramid_query>;
 extern template class MapBatches<device_types::mica_smooth_query>;
 
 }  // namespace mica

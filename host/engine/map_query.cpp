@@ -161,7 +161,7 @@ device_types::mica_map_query to_triangle_query(const Query& query, const device_
 }
 
 double sum_of_weights(const Eigen::Matrix2d& cov_spacings, const Eigen::Vector2d& mean_spacings) {
-  constexpr int orders = 2;      // the third one's terms are below exp(-2 pi^2 9 k) = 1e-14
+  constexpr int orders = 2;       // the third one's terms are below exp(-2 pi^2 9 k) = 1e-14
   constexpr double nothing = 20;  // exp(-20) = 2e-9 of the sum
   const double a = cov_spacings(0, 0), b = cov_spacings(0, 1), c = cov_spacings(1, 1);
   const double least_variance = 0.5 * (a + c) - std::hypot(0.5 * (a - c), b);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <set>
 
+#include "host/base/error.h"
 #include "host/build/footprint_energy.h"
 #include "host/build/lobes.h"
 #include "host/build/map_structure.h"
@@ -116,7 +117,18 @@ std::vector<std::string> channels_for(const std::vector<std::string>& aovs) {
   add("footprint", {"CUU", "CUV", "CVV"});
   add("normal", {"X", "Y", "Z"});
   add("queries", {"Y"});
+  add("error", {"Y"});
   return channels;
+}
+
+/// `error` is asked only of evaluators that say something of their error.
+void check_estimates(const Plan& plan) {
+  if (std::count(plan.channels.begin(), plan.channels.end(), "error.Y") == 0) return;
+  for (const PlannedEvaluator& planned : plan.evaluators)
+    if (planned.evaluator != "auto" && planned.evaluator != "triangles")
+      throw UsageError(fmt::format(
+          "image.aovs: \"error\" wants materials with ndf \"auto\" or \"triangles\"; material {} has \"{}\"",
+          planned.materials.front(), planned.evaluator));
 }
 
 double mebibytes(std::size_t bytes) {
@@ -156,6 +168,7 @@ Plan make_plan(const Job& job) {
                                                                    : -1);
 
   plan.channels = channels_for(job.image.aovs);
+  check_estimates(plan);
   plan.warnings = missing_densities(job, plan);
   plan.queries_a_batch = kQueriesABatch;
   const std::size_t queries_a_row = static_cast<std::size_t>(job.image.width) * job.image.subpixels *

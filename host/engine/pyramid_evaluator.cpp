@@ -6,7 +6,6 @@
 
 #include "host/base/stopwatch.h"
 #include "host/engine/accuracy.h"
-#include "host/engine/collected_densities.h"
 #include "host/engine/map_query.h"
 #include "host/engine/mixture_evaluator.h"
 #include "host/engine/triangle_evaluator.h"
@@ -20,6 +19,38 @@ constexpr double kPi = 3.14159265358979323846;
 /// Cells narrower than this would be more than a map has texels; so small a roughness goes to the texels.
 constexpr double kNarrowestCell = 1.0 / 512;
 
+/// Queries that one level answers, and what its answers count.
+struct Share {
+  std::vector<std::size_t> places;
+  std::vector<float> weights;
+};
+
+/// Answers of several levels; a query's are added in the order of its levels, whatever it is sent with.
+class BlendedDensities : public PendingDensities {
+ public:
+  explicit BlendedDensities(std::size_t count) : densities_(count) {}
+
+  void add(std::unique_ptr<PendingDensities> pending, Share share) {
+    parts_.push_back({std::move(pending), std::move(share)});
+  }
+  std::vector<float> wait() override {
+    for (Part& part : parts_) {
+      const std::vector<float> answers = part.pending->wait();
+      for (std::size_t n = 0; n < answers.size(); ++n)
+        densities_[part.share.places[n]] += part.share.weights[n] * answers[n];
+    }
+    return std::move(densities_);
+  }
+
+ private:
+  struct Part {
+    std::unique_ptr<PendingDensities> pending;
+    Share share;
+  };
+  std::vector<Part> parts_;
+  std::vector<float> densities_;
+};
+
 }  // namespace
 
 PyramidEvaluator::PyramidEvaluator(Device& device, const Surface& surface, const PyramidSettings& settings)
@@ -30,25 +61,36 @@ PyramidEvaluator::PyramidEvaluator(Device& device, const Surface& surface, const
       cutoff_(cutoff_for(settings.precision.cutoff_error)) {}
 
 std::unique_ptr<PendingDensities> PyramidEvaluator::start(const std::vector<Query>& queries) {
-  std::map<PyramidChoice, std::vector<std::size_t>> by_level;
+  std::map<PyramidChoice, Share> by_level;
   std::vector<std::size_t> small;
+  const auto add = [&](const PyramidChoice& choice, std::size_t place, double weight) {
+    by_level[choice].places.push_back(place);
+    by_level[choice].weights.push_back(static_cast<float>(settings_.count_elements ? 1 : weight));
+  };
   for (std::size_t n = 0; n < queries.size(); ++n) {
     const std::optional<PyramidChoice> choice = choose(queries[n]);
-    (choice ? by_level[*choice] : small).push_back(n);
+    if (!choice) {
+      small.push_back(n);
+      continue;
+    }
+    for (const PyramidShare& share : shares_of(queries[n], *choice, surface_.width(), surface_.height(),
+                                               finest_block(choice->cell_class), settings_.precision))
+      add(share.choice, n, share.weight);
   }
-  auto all = std::make_unique<CollectedDensities>(queries.size());
+  auto all = std::make_unique<BlendedDensities>(queries.size());
   std::vector<Query> some;
   const auto take = [&](const std::vector<std::size_t>& places) {
     some.resize(places.size());
     for (std::size_t n = 0; n < places.size(); ++n) some[n] = queries[places[n]];
   };
-  for (auto& [choice, places] : by_level) {
-    take(places);
-    all->add(start_merged(some, choice, cutoff_, gain(choice)), std::move(places));
+  for (auto& [choice, share] : by_level) {
+    take(share.places);
+    all->add(start_merged(some, choice, cutoff_, gain(choice)), std::move(share));
   }
   if (!small.empty()) {
     take(small);
-    all->add(texels()->start(some), std::move(small));
+    const std::vector<float> ones(small.size(), 1.0f);
+    all->add(texels()->start(some), {std::move(small), ones});
   }
   return all;
 }

@@ -37,9 +37,14 @@ class PyramidEvaluator : public Evaluator {
   /// The level that a query reads, none: the texels.
   std::optional<PyramidChoice> choose(const Query& query);
 
+  /// That of a choice; built when it is not there.
+  PyramidLevelBatches& level(const PyramidChoice& choice);
+
+  const PyramidSettings& settings() const { return settings_; }
+  WaveForm wave_form() const { return wave_form_; }
+
  private:
   int finest_block(int cell_class);
-  PyramidLevelBatches& level(const PyramidChoice& choice);
   std::unique_ptr<PendingDensities> start_merged(const std::vector<Query>& queries,
                                                  const PyramidChoice& choice, double cutoff, double gain);
   double gain(const PyramidChoice& choice);

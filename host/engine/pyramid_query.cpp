@@ -11,9 +11,23 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kFirstRoughness = 0.02;  // whose cells are not narrower than asked for
-constexpr double kLargestAspect = 128;    // single precision keeps 0.1% of such a footprint's determinant
 constexpr double kSlack = 1e-9;           // of ratios that are meant to be equal
+constexpr double kBlendOctaves = 0.25;    // of a footprint's width, over which one level fades into another
 constexpr double kUniformVariance = 0.8 * 0.8;  // see without_needless_periods
+
+/// How wide a footprint is, in octaves, beyond where the fading into a uniform one begins.
+double octaves_into_uniform(const Footprint& footprint) {
+  const Eigen::Matrix2d& cov = footprint.cov_uv;
+  const double smaller = 0.5 * (cov(0, 0) + cov(1, 1)) - std::hypot(0.5 * (cov(0, 0) - cov(1, 1)), cov(0, 1));
+  return kBlendOctaves + 0.5 * std::log2(std::max(smaller, 1e-30) / kUniformVariance);
+}
+
+/// Standard deviation that says which level is read; while it fades into a uniform one, a footprint keeps
+/// its.
+double level_sigma_texels(const Footprint& footprint, int map_width, int map_height) {
+  return footprint_axes(footprint, map_width, map_height).sigma_minor_texels *
+         std::exp2(-std::max(octaves_into_uniform(footprint), 0.0));
+}
 
 }  // namespace
 
@@ -34,33 +48,51 @@ std::optional<PyramidChoice> choose_level(const Query& query, int map_width, int
     return choice;
   }
   if (axes.sigma_major_texels > kLargestAspect * axes.sigma_minor_texels) return std::nullopt;
-  const double largest = precision.block_ratio * axes.sigma_minor_texels * (1 + kSlack);
+  const double largest =
+      precision.block_ratio * level_sigma_texels(footprint, map_width, map_height) * (1 + kSlack);
   if (largest < kFinestBlock) return std::nullopt;
   choice.block = whole_map;
   while (choice.block > largest) choice.block /= 2;
   return choice;
 }
 
-device_types::mica_pyramid_query to_pyramid_query(const Query& query,
-                                                  const device_types::mica_pyramid_level& level,
+std::vector<PyramidShare> shares_of(const Query& query, const PyramidChoice& choice, int map_width,
+                                    int map_height, int finest_block, const PyramidPrecision& precision) {
+  if (choice.uniform) return {{choice, 1}};
+  const Footprint footprint = without_needless_periods(query.footprint);
+  const double room =
+      std::log2(precision.block_ratio * level_sigma_texels(footprint, map_width, map_height) / choice.block);
+  const double finer = choice.block / 2 < finest_block ? 0 : std::clamp(1 - room / kBlendOctaves, 0.0, 1.0);
+  const double uniform = std::clamp(octaves_into_uniform(footprint) / kBlendOctaves, 0.0, 1.0);
+  std::vector<PyramidShare> shares;
+  const auto add = [&shares](const PyramidChoice& level, double weight) {
+    if (weight > 0) shares.push_back({level, weight});
+  };
+  add({choice.cell_class, choice.block / 2, false}, (1 - uniform) * finer);
+  add(choice, (1 - uniform) * (1 - finer));
+  add({choice.cell_class, whole_map_block(map_width, map_height), true}, uniform);
+  return shares;
+}
+
+device_types::mica_pyramid_query to_pyramid_query(const Query& query, const PyramidShape& level,
                                                   Interpolation interpolation, double cutoff, bool uniform) {
   device_types::mica_pyramid_query result{};
-  const device_types::mica_map_grid grid = {level.width, level.height, 0, 0};
-  result.map = to_map_query(query, grid, interpolation, cutoff);
+  const int width = level.grid.width, height = level.grid.height;
+  result.group_size = level.group_size;
+  result.map = to_map_query(query, level.grid, interpolation, cutoff);
   if (uniform) {
     // All of the map at once, with the same weight: a footprint so wide that every position counts alike.
-    const double sigma = 1e4 * std::max(level.width, level.height);
+    const double sigma = 1e4 * std::max(width, height);
     const auto variance = static_cast<float>(sigma * sigma);
     result.cov_xx = result.cov_yy = variance;
     result.map.whiten_1x = result.map.whiten_2y = static_cast<float>(1 / sigma);
     result.map.whiten_1y = result.map.whiten_2x = 0;
     result.map.extent_x = result.map.extent_y = 0;
     result.map.scale = static_cast<float>(sigma * sigma / (2 * kPi * query.roughness * query.roughness) /
-                                          (static_cast<double>(level.width) * level.height));
+                                          (static_cast<double>(width) * height));
     return result;
   }
-  const FootprintAxes axes =
-      footprint_axes(without_needless_periods(query.footprint), level.width, level.height);
+  const FootprintAxes axes = footprint_axes(without_needless_periods(query.footprint), width, height);
   const double variance_1 = axes.sigma_major_texels * axes.sigma_major_texels,
                variance_2 = axes.sigma_minor_texels * axes.sigma_minor_texels;
   const Eigen::Matrix2d cov =

@@ -2,8 +2,10 @@
 
 #include <optional>
 #include <tuple>
+#include <vector>
 
 #include "host/base/query.h"
+#include "host/build/moment_pyramid.h"
 #include "host/surface/description.h"
 #include "kernels/pyramid_types.h"
 
@@ -28,6 +30,9 @@ struct PyramidChoice {
   }
 };
 
+/// Single precision keeps 0.1% of the determinant of a footprint with this ratio of its axes.
+constexpr double kLargestAspect = 128;
+
 /// Cells come in widths half an octave apart: those of roughness 0.02 and sqrt(2)^n times as much.
 double cell_width(int cell_class, const PyramidPrecision& precision);
 
@@ -35,9 +40,20 @@ double cell_width(int cell_class, const PyramidPrecision& precision);
 std::optional<PyramidChoice> choose_level(const Query& query, int map_width, int map_height,
                                           const PyramidPrecision& precision);
 
+/// What a query takes of a level.
+struct PyramidShare {
+  PyramidChoice choice;
+  double weight = 1;
+};
+
+/// Levels fade into each other, so that a zoom does not show where they change: a footprint that is hardly
+/// wide enough for `choice`, its own, takes a share of the level with half its blocks, where that is not
+/// finer than `finest_block`, and one that is about to be uniform takes a share of that. One to three shares.
+std::vector<PyramidShare> shares_of(const Query& query, const PyramidChoice& choice, int map_width,
+                                    int map_height, int finest_block, const PyramidPrecision& precision);
+
 /// The query in the kernel's form. @param uniform of the choice.
-device_types::mica_pyramid_query to_pyramid_query(const Query& query,
-                                                  const device_types::mica_pyramid_level& level,
+device_types::mica_pyramid_query to_pyramid_query(const Query& query, const PyramidShape& level,
                                                   Interpolation interpolation, double cutoff, bool uniform);
 
 }  // namespace mica

@@ -8,6 +8,7 @@
 #include "host/base/stopwatch.h"
 #include "host/base/version.h"
 #include "host/engine/built_job.h"
+#include "host/engine/error_estimates.h"
 #include "host/engine/film.h"
 #include "host/engine/gather_light.h"
 
@@ -33,6 +34,8 @@ void render_rows(const BuiltJob& built, const RenderProgress& progress, AuditSam
   const Stopwatch total;
   const ImageSettings& image = built.job().image;
   const int rows_a_block = built.plan().rows_a_block;
+  const std::vector<std::string>& channels = built.plan().channels;
+  const bool wants_errors = std::find(channels.begin(), channels.end(), "error.Y") != channels.end();
   Film film(image.width, image.height, built.plan().channels);
   std::optional<PendingBlock> in_flight;
   for (int row = 0; row < image.height || in_flight; row += rows_a_block) {
@@ -50,7 +53,8 @@ void render_rows(const BuiltJob& built, const RenderProgress& progress, AuditSam
       const Stopwatch waiting;
       const std::vector<float> densities = in_flight->wait();
       result->seconds.wait += waiting.seconds();
-      film.add(in_flight->rows(), densities);
+      film.add(in_flight->rows(), densities,
+               wants_errors ? estimate_errors(built, in_flight->rows(), densities) : std::vector<float>());
       offer(in_flight->rows(), densities, built.plan(), image.width, sampler);
       result->queries += densities.size();
       progress(in_flight->rows().first_row + in_flight->rows().row_count, image.height);

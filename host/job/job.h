@@ -16,7 +16,7 @@ struct ImageSettings {
   int subpixels = 4;              ///< footprints a pixel and axis [Yan14 sec. 3]
   int samples = 16;               ///< directions a subpixel in which light from all around is gathered
   int max_bounces = 1;            ///< reflections of light on its way to the camera, at most
-  std::vector<std::string> aovs;  ///< of: ndf, uv, footprint, normal, queries
+  std::vector<std::string> aovs;  ///< of: ndf, uv, footprint, normal, queries, error
   double exposure = 0;            ///< of the PNG preview, in stops
   ToneMap tone_map = ToneMap::shoulder;
 };

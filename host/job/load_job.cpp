@@ -54,7 +54,7 @@ ImageSettings read_image(TableReader& table) {
   table.read("subpixels", image.subpixels, closed(1, 16));
   table.read("samples", image.samples, closed(1, 65536));
   table.read("max_bounces", image.max_bounces, closed(1, 64));
-  const std::vector<std::string_view> aovs = {"ndf", "uv", "footprint", "normal", "queries"};
+  const std::vector<std::string_view> aovs = {"ndf", "uv", "footprint", "normal", "queries", "error"};
   table.read("aovs", image.aovs, aovs);
   table.read("exposure", image.exposure, closed(-32, 32));
   const Choices<ToneMap> tone_maps = {{"clamp", ToneMap::clamp},

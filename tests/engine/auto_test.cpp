@@ -8,6 +8,7 @@
 
 #include "host/base/error.h"
 #include "host/engine/accuracy.h"
+#include "host/engine/make_evaluator.h"
 #include "host/reference/oracle.h"
 #include "host/surface/random.h"
 #include "tests/engine/bilinear_samples.h"
@@ -81,6 +82,35 @@ TEST(Auto, AnswersAreTheSameInAnyBatch) {
     const std::vector<float> some = parts->evaluate({first, first + 9});
     for (std::size_t k = 0; k < some.size(); ++k) EXPECT_EQ(some[k], expected[n + k]);
   }
+}
+
+/// Of queries that it has not seen: errors are no larger than estimated, in root mean square; of bright and
+/// of dim ones, which the calibration did not tell apart, no more than twice as large.
+TEST(Auto, EstimatesTheErrorOfEachQuery) {
+  const Surface surface = spectrum();
+  const auto chooser = calibrated(surface, 0.01, mixed_queries(surface, 600, 10));
+  std::vector<Query> fresh = mixed_queries(surface, 480, 13);
+  const std::vector<float> densities = chooser->evaluate(fresh);
+  const std::unique_ptr<Evaluator> triangles = make_evaluator("triangles", device(), surface);  // keeps 1e-4
+  const std::vector<float> expected = triangles->evaluate(fresh);
+  double mean = 0;
+  for (const float density : expected) mean += density / static_cast<double>(expected.size());
+  double all_errors = 0, all_estimates = 0, all_references = 0;
+  for (const bool bright : {false, true}) {
+    double errors = 0, estimates = 0;
+    for (std::size_t n = 0; n < fresh.size(); ++n) {
+      if ((expected[n] > mean) != bright) continue;
+      errors += std::pow(densities[n] - expected[n], 2);
+      estimates += std::pow(chooser->error_estimate(fresh[n], densities[n]), 2);
+      all_references += std::pow(expected[n], 2);
+    }
+    std::printf("errors %.3g, estimates %.3g\n", std::sqrt(errors), std::sqrt(estimates));
+    EXPECT_LE(errors, 4 * estimates) << bright;
+    EXPECT_LE(estimates, 16 * errors) << bright;
+    all_errors += errors, all_estimates += estimates;
+  }
+  EXPECT_LE(all_errors, all_estimates);
+  EXPECT_LE(all_estimates, 1e-4 * all_references);  // the tolerance
 }
 
 /// A class that was not sampled is exact.

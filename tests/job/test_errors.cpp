@@ -72,7 +72,7 @@ const std::vector<Mistake> wrong_types = {
      "camera.position.2: found a table; expected a number in [-1000000, 1000000]"},
     {"", "[image]\naovs = @\"uv\"",
      "image.aovs: found \"uv\" (a string); expected an array with any of: ndf, uv, footprint, normal, "
-     "queries"},
+     "queries, error"},
     {"\"bumps\"", "@[\"bumps\"]",
      "material.gold.surface: found an array; expected a string that is not empty"},
     {"\"sphere\"", "@1",
@@ -206,7 +206,7 @@ const std::vector<Mistake> wrong_words = {
      "material.gold.ndf: found \"triangle\"; expected an evaluator that is available: triangles, gaussians, "
      "beckmanns, smooth, cavities, pyramid, auto, grid, normalmap (did you mean \"triangles\"?)"},
     {"", "[image]\naovs = [\"uv\", @\"depth\"]",
-     "image.aovs.1: found \"depth\" (a string); expected one of: ndf, uv, footprint, normal, queries"},
+     "image.aovs.1: found \"depth\" (a string); expected one of: ndf, uv, footprint, normal, queries, error"},
     {"", "[image]\naovs = [\"uv\", @\"uv\"]", "image.aovs.1: found \"uv\" again; expected each at most once"},
     {"[surface.bumps]", "@[surface.\"\"]\n[surface.bumps]",
      "surface.\"\": found an empty name; expected one that can be referred to"},

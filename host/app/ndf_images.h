@@ -1,0 +1,17 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "host/app/evaluation.h"
+#include "host/engine/image_window.h"
+
+namespace mica::app {
+
+/// Images of `count` footprints' P-NDFs, one after the other, 0 off the disk: element by element where the
+/// evaluator can, and query by query where not.
+/// @param footprint its half vector does not matter.
+std::vector<float> draw_images(const OpenEvaluator& open, const Surface& surface, std::size_t count,
+                               const std::function<Query(std::size_t)>& footprint, const ImageWindow& window);
+
+}  // namespace mica::app
