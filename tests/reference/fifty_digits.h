@@ -127,9 +127,9 @@ class FiftyDigits {
                        const Number& so_far) {
     const Number middle = (a + b) / 2, left = panel(f, a, middle), right = panel(f, middle, b);
     const Number scale = std::max(Number(left + right), so_far);
-    // Halving a rule of 15 points gains a factor of 2^30: what is left of a difference of 1e-9 is below
-    // 1e-17.
-    if (b - a < 20 && abs(left + right - whole) <= Number(1e-9) * scale) return left + right;
+    // Halving a rule of 15 points gains a factor of 2^30: what is left of a difference of 1e-12 is below
+    // 1e-20. Where a panel is wide enough to miss a peak, two rules may agree and both be wrong.
+    if (b - a < 4 && abs(left + right - whole) <= Number(1e-12) * scale) return left + right;
     const Number done = refine(f, a, middle, left, so_far);
     return done + refine(f, middle, b, right, std::max(so_far, done));
   }

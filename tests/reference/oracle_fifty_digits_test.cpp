@@ -1,5 +1,5 @@
 // The oracle against 50-digit quadrature of whole queries, from the query's own numbers on. Cases are 60, or
-// as many as the environment's MICA_ORACLE_CASES says: 10,000 take a quarter of an hour of one core.
+// as many as the environment's MICA_ORACLE_CASES says: 10,000 take half an hour of one core.
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
 
