@@ -24,16 +24,6 @@ GlintsDescription glints_of(Distribution distribution, double alpha, double dens
   return glints;
 }
 
-GlintGrid grid_of(const GlintsDescription& glints) {
-  GlintGrid grid;
-  grid.distribution = glints.distribution;
-  grid.alpha_x = glints.alpha.x(), grid.alpha_y = glints.alpha.y();
-  grid.density = glints.density;
-  grid.stretch = glints.stretch;
-  grid.seed = glints.seed;
-  return grid;
-}
-
 /// Footprints from a hundredth of a cell to a hundred, half vectors all over the distribution.
 std::vector<Query> queries_for(const GlintsDescription& glints, const reference::GlintProcess& process) {
   constexpr std::size_t count = 500;

@@ -14,6 +14,12 @@ namespace {
 constexpr std::size_t kWaveLanes = 16;
 constexpr double kLeastCosine = 1e-6;  // as of scenes: closer to the horizon nothing is seen or lit
 
+bool is_above(const Eigen::Vector3d& direction) {
+  return direction.z() >= kLeastCosine;
+}
+
+}  // namespace
+
 GlintGrid grid_of(const GlintsDescription& glints) {
   GlintGrid grid;
   grid.distribution = glints.distribution;
@@ -23,12 +29,6 @@ GlintGrid grid_of(const GlintsDescription& glints) {
   grid.seed = glints.seed;
   return grid;
 }
-
-bool is_above(const Eigen::Vector3d& direction) {
-  return direction.z() >= kLeastCosine;
-}
-
-}  // namespace
 
 GridBrdf::GridBrdf(Device& device, const GlintsDescription& glints, std::size_t batch_queries)
     : device_(device),

@@ -6,6 +6,9 @@
 
 namespace mica {
 
+/// The process that a material's glints are, where it has no textures.
+GlintGrid grid_of(const GlintsDescription& glints);
+
 /// `grid`: the BRDF of glints without a map, [Kem25] Eq. 1, without Fresnel: D(h) G(o, i) / (4 o.g i.g). It
 /// is not normalised: a footprint with many bright glints may send out more light than it gets, one with few
 /// less; the mean over a surface is that of the smooth distribution. Nothing bounces twice.

@@ -13,6 +13,7 @@
 #include "host/reference/beckmann_mixture.h"
 #include "host/surface/random.h"
 #include "tests/engine/bilinear_samples.h"
+#include "tests/engine/mixture_culling.h"
 #include "tests/engine/mixture_surfaces.h"
 
 namespace mica {
@@ -83,27 +84,10 @@ double error_of(const Surface& surface, int elements, double roughness) {
   return relative_l2(beckmanns(surface, elements).evaluate(queries), expected);
 }
 
-/// Of the integral, culling at a weight of e drops at most e (1 - ln e): position and normal are four
-/// Gaussian numbers. It adds nothing.
 TEST(Beckmanns, CullingDropsWhatItMay) {
   for (const Surface& surface : {mixture_spectrum(), mixture_brushed()}) {
     BeckmannEvaluator evaluator = beckmanns(surface, 1), fine = beckmanns(surface, 1, 1e-9);
-    for (const double roughness : {0.005, 0.05}) {
-      for (const double sigma_texels : {2.0, 6.0}) {
-        const Footprint footprint =
-            make_footprint(surface, {0.37, 0.61}, sigma_texels, 0.6 * sigma_texels, 1);
-        const std::vector<Query> queries = lattice_queries(surface, footprint, roughness);
-        const std::vector<float> densities = evaluator.evaluate(queries), all = fine.evaluate(queries);
-        double dropped = 0, sum = 0;
-        for (std::size_t n = 0; n < queries.size(); ++n) {
-          EXPECT_LE(densities[n], (1 + 1e-6) * all[n]);
-          dropped += all[n] - densities[n], sum += all[n];
-        }
-        const double error = MixtureSettings().cutoff_error;
-        EXPECT_LE(dropped / sum, error * (1 - std::log(error)));
-        std::printf("roughness %g, footprint %g: %.1e dropped\n", roughness, sigma_texels, dropped / sum);
-      }
-    }
+    expect_culling_drops_little(surface, &evaluator, &fine);
   }
 }
 
