@@ -23,8 +23,8 @@
 
 // Least o_z - p.o_xy of the mean slope p at which most lobes are left out.
 #define LEAST_FACING 0.1f
-// Standard deviations beyond which a lobe faces a direction as a whole; it hides 4e-7 of its width.
-#define FACING_DEVIATIONS 4.5f
+// Standard deviations beyond which a lobe faces a direction as a whole; it hides 6e-5 of its width.
+#define FACING_DEVIATIONS 3.5f
 
 // What a direction sees of lobes: the projected area of their mean normals, and the variance of that.
 typedef struct {
@@ -90,7 +90,7 @@ static inline void view_lobes(const private lobe_leaf* lobes, float roughness, f
 
 // Areas, less the part that is linear in the mean unless all lobes are visited.
 static inline wave_float lobe_areas(const private lobe_view* view, int all) {
-  const wave_float hidden = hidden_area(view->facing, sqrt(max(view->variance, 1e-16f)));
+  const wave_float hidden = hidden_area(view->facing, max(view->variance, 1e-16f));
   return all ? max(view->facing + hidden, 0.0f) : hidden;
 }
 
@@ -154,8 +154,8 @@ static inline float facing(slope_lobe lobe, float o_x, float o_y, float o_z) {
 static inline float lobe_area(slope_lobe lobe, float o_x, float o_y, float o_z) {
   const float m = facing(lobe, o_x, o_y, o_z);
   const float variance = fma(lobe.xx * o_x, o_x, fma(2.0f * lobe.xy * o_x, o_y, lobe.yy * o_y * o_y));
-  const wave_float wave_m = m, wave_t = sqrt(max(variance, 1e-16f));
-  const wave_float hidden = hidden_area(wave_m, wave_t);
+  const wave_float wave_m = m, wave_variance = max(variance, 1e-16f);
+  const wave_float hidden = hidden_area(wave_m, wave_variance);
 #if MICA_WAVE_ITEMS
   return max(m + hidden, 0.0f);
 #else
