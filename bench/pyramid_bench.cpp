@@ -2,13 +2,17 @@
 // against the best fixed evaluator that keeps 1%, random footprints, in one run; and a zoom. Prints a table.
 // Errors are relative L2 against `triangles`, which keeps 1e-4 of the oracle.
 //   pyramid_bench [SURFACE... | FILE...] [--quick] [--errors | --costs]
-// --errors times nothing; --costs prints what the cost model of `auto` is made of.
+// --errors times nothing; --costs fits the cost model of `auto`.
 
 #include <fmt/format.h>
 
+#include <Eigen/QR>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <ctime>
+#include <functional>
+#include <map>
 #include <numeric>
 
 #include "host/base/error.h"
@@ -16,6 +20,7 @@
 #include "host/bench/coherent.h"
 #include "host/engine/accuracy.h"
 #include "host/engine/auto_evaluator.h"
+#include "host/engine/cost_model.h"
 #include "host/engine/make_evaluator.h"
 #include "host/engine/mixture_evaluator.h"
 #include "host/engine/pyramid_evaluator.h"
@@ -123,7 +128,7 @@ Row best_fixed(Device& device, const Surface& surface, Evaluator* triangles,
 double strict_auto_error(Device& device, const Surface& surface, const std::vector<Query>& queries,
                          const std::vector<Query>& few, const std::vector<float>& expected) {
   AutoEvaluator chooser(device, surface, 0.001);
-  chooser.calibrate(thinned(queries, 1024));
+  chooser.calibrate(thinned(queries, 64));
   return error_of(&chooser, few, expected);
 }
 
@@ -139,37 +144,83 @@ double core_nanoseconds(Evaluator* evaluator, const std::vector<Query>& queries)
   return 1e9 * timing_of(seconds).median_seconds / static_cast<double>(queries.size());
 }
 
-double mean_count(Evaluator* counter, const std::vector<Query>& queries) {
-  const std::vector<float> counts = counter->evaluate(queries);
-  return std::accumulate(counts.begin(), counts.end(), 0.0) / static_cast<double>(counts.size());
+double mean(const std::vector<float>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-/// What a query and one count of its kernel cost, of every evaluator that `auto` may choose: to fit its cost
-/// model to.
-void print_costs(Device& device, const std::string& name, double roughness) {
+/// Of an evaluator, what a row of queries took and what its cost model goes by.
+struct CostRow {
+  double nanoseconds, blocks, counts;
+};
+using CostRows = std::map<std::string, std::vector<CostRow>>;
+
+/// The model with the least squares of relative differences; what would be negative is left out.
+CostModel fit(const std::vector<CostRow>& rows) {
+  std::array<bool, 3> used = {true, true, true};
+  for (;;) {
+    Eigen::MatrixXd terms(rows.size(), 3);
+    for (std::size_t n = 0; n < rows.size(); ++n)
+      terms.row(static_cast<long>(n)) << used[0], used[1] * rows[n].blocks, used[2] * rows[n].counts;
+    for (std::size_t n = 0; n < rows.size(); ++n) terms.row(static_cast<long>(n)) /= rows[n].nanoseconds;
+    const Eigen::VectorXd found =
+        terms.completeOrthogonalDecomposition().solve(Eigen::VectorXd::Ones(terms.rows()));
+    const auto lowest =
+        static_cast<std::size_t>(std::min_element(found.data(), found.data() + 3) - found.data());
+    if (found[static_cast<long>(lowest)] >= 0) return {found[0], found[1], found[2]};
+    used[lowest] = false;
+  }
+}
+
+void print_fit(const std::string& evaluator, const std::vector<CostRow>& rows) {
+  const CostModel model = fit(rows);
+  double worst = 1, squares = 0;
+  for (const CostRow& row : rows) {
+    const double ratio = std::log(model.of(row.blocks, row.counts) / row.nanoseconds);
+    worst = std::max(worst, std::exp(std::abs(ratio)));
+    squares += ratio * ratio;
+  }
+  fmt::print("{:<12} {{{:.4g}, {:.3g}, {:.3g}}}, off by a factor of {:.2f} (RMS), {:.2f} at most\n",
+             evaluator, model.query, model.block, model.count, std::exp(std::sqrt(squares / rows.size())),
+             worst);
+}
+
+/// What queries cost and what their kernels count, of every evaluator that `auto` may choose.
+void measure_costs(Device& device, const std::string& name, double roughness, CostRows* rows) {
   const Surface surface = make_named(name);
-  const auto print = [&](const std::string& evaluator, Evaluator* timed, Evaluator* counter) {
-    for (const double sigma : {1.0, 2.0, 4.0, 8.0, 16.0, 32.0}) {
-      const std::size_t count = sigma > 8 ? 1 << 10 : 1 << 13;
+  using Count = std::function<std::vector<float>(const std::vector<Query>&)>;
+  const auto measure = [&](const std::string& evaluator, const std::vector<double>& sigmas, bool blocks,
+                           Evaluator* timed, const Count& counts) {
+    for (const double sigma : sigmas) {
+      const std::size_t count = sigma > 8 ? 1 << 10 : 1 << 12;
       const std::vector<Query> queries = random_queries(surface, sigma, roughness, count);
-      fmt::print("{:<10} {:>5} {:>3}  {:<12} {:>10.0f} ns {:>10.0f} counts\n", name, roughness, sigma,
-                 evaluator, core_nanoseconds(timed, queries), mean_count(counter, queries));
+      CostRow row{core_nanoseconds(timed, queries), 0, mean(counts(queries))};
+      if (blocks) row.blocks = blocks_reached(queries.front(), surface.width(), surface.height());
+      fmt::print("{:<10} {:>5} {:>4}  {:<12} {:>10.0f} ns {:>10.0f} counts\n", name, roughness, sigma,
+                 evaluator, row.nanoseconds, row.counts);
       std::fflush(stdout);
+      (*rows)[evaluator].push_back(row);
     }
   };
+  const std::vector<double> small = {1, 2, 4, 8, 16, 32}, large = {32, 128, 512};
   TriangleSettings triangles;
   TriangleEvaluator timed_triangles(device, surface, triangles);
   triangles.count_flops = true;
   TriangleEvaluator counting_triangles(device, surface, triangles);
-  print("triangles", &timed_triangles, &counting_triangles);
+  measure("triangles", small, true, &timed_triangles,
+          [&](const auto& queries) { return counting_triangles.evaluate(queries); });
   for (const int elements : {1, 2, 4}) {
     MixtureSettings mixture;
     mixture.elements = elements;
     GaussianEvaluator timed(device, surface, mixture);
     mixture.count_elements = true;
     GaussianEvaluator counting(device, surface, mixture);
-    print(fmt::format("gaussians {}", elements), &timed, &counting);
+    measure(fmt::format("gaussians {}", elements), small, true, &timed,
+            [&](const auto& queries) { return counting.evaluate(queries); });
   }
+  PyramidEvaluator pyramid(device, surface);
+  if (roughness >= 0.02)  // others cost alike, and their levels take long to build
+    measure("pyramid", large, false, &pyramid,
+            [&](const auto& queries) { return pyramid.count_elements(queries); });
 }
 
 struct Effort {
@@ -186,11 +237,11 @@ void measure(Device& device, const std::string& name, double roughness, const Ef
   if (effort.quick) sigmas = {8, 32, 128, 512};
   for (const double sigma : sigmas) {
     const std::vector<Query> queries = random_queries(surface, sigma, roughness, 1 << 16);
-    const std::vector<Query> few = thinned(queries, sigma > 64 ? 2048 : 512);
+    const std::vector<Query> few = thinned(queries, sigma > 64 ? 1024 : sigma > 16 ? 256 : 32);
     const std::vector<float> expected = triangles.evaluate(few);
     const double pyramid_error = error_of(&pyramid, few, expected);
     AutoEvaluator chooser(device, surface, 0.01);
-    chooser.calibrate(thinned(queries, 1024));
+    chooser.calibrate(thinned(queries, 64));
     const double auto_error = error_of(&chooser, few, expected);
     const double strict_error = strict_auto_error(device, surface, queries, few, expected);
     const double pyramid_rate = effort.timed ? rate(&pyramid, queries) : 0,
@@ -246,8 +297,11 @@ int run(std::vector<std::string> names, const Effort& effort) {
   Device device(0);
   if (names.empty()) names = {"spectrum", "brushed", "flakes", "scratches"};
   if (effort.costs) {
+    CostRows rows;
     for (const std::string& name : names)
-      for (const double roughness : {0.02, 0.005}) print_costs(device, name, roughness);
+      for (const double roughness : {0.02, 0.005}) measure_costs(device, name, roughness, &rows);
+    fmt::print("\nhost/engine/cost_model.cpp: ns of a query, a block, a count\n");
+    for (const auto& [evaluator, measured] : rows) print_fit(evaluator, measured);
     return 0;
   }
   fmt::print("device {}; random footprints, wall clock, median of {}\n", device.info().name, kRepeats);

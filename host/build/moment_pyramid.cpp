@@ -136,7 +136,7 @@ void build_moment_pyramid(const Surface& surface, double cell_width, int finest_
 }
 
 std::size_t estimate_level_bytes(const Surface& surface, double cell_width, int block) {
-  constexpr int samples = 8;  // a side, at most: a sample of blocks spread over the map
+  const int samples = std::clamp(256 / block, 1, 8);  // a side: a sample of blocks spread over the map
   const NormalCells cells(surface, cell_width);
   const int columns = (surface.width() + block - 1) / block, rows = (surface.height() + block - 1) / block;
   const int sampled_columns = std::min(columns, samples), sampled_rows = std::min(rows, samples);

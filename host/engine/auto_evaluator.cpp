@@ -3,11 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
+#include <optional>
 
 #include "host/base/error.h"
 #include "host/engine/collected_densities.h"
+#include "host/engine/cost_model.h"
 #include "host/engine/map_query.h"
 #include "host/engine/mixture_evaluator.h"
 #include "host/engine/pyramid_evaluator.h"
@@ -22,18 +26,14 @@ constexpr double kTrianglesError = 1e-4;  // what `triangles` are off by, at mos
 
 enum class Method { pyramid, gaussians, triangles };
 
-/// Nanoseconds of one core, of a query and of one thing that its kernel counts. Measured on one machine: only
-/// their ratios matter.
-struct CostModel {
-  double query, count;
-};
-CostModel cost_model(Method method, int elements) {
-  if (method == Method::triangles) return {700, 0.044};
-  if (method == Method::gaussians) return {700, elements == 1 ? 2.6 : elements == 2 ? 1.5 : 1.3};
-  return {500, 2.6};
-}
+/// A candidate is judged by the first so many of a class's samples, and by more only while these cannot tell.
+constexpr std::array<std::size_t, 3> kLooks = {64, 256, AutoEvaluator::kMostSamples};
+/// Of the bounds of each: so that all of them hold at 95%.
+constexpr double kConfidence = 1 - 0.05 / kLooks.size();
+/// Core nanoseconds that the expected densities of a class may take, where the first look does not.
+constexpr double kMostLooking = 2e9;
 
-/// Upper bound, at 95% confidence, of the relative L2 whose squares were sampled: the bootstrap's.
+/// Upper bound, at kConfidence, of the relative L2 whose squares were sampled: the bootstrap's.
 double bootstrap_bound(const std::vector<double>& squares, const std::vector<double>& references) {
   constexpr int resamples = 400;
   const std::size_t count = squares.size();
@@ -49,7 +49,7 @@ double bootstrap_bound(const std::vector<double>& squares, const std::vector<dou
     errors[k] = reference > 0 ? std::sqrt(square / reference) : 0;
   }
   std::sort(errors.begin(), errors.end());
-  return errors[static_cast<std::size_t>(0.95 * resamples)];
+  return errors[static_cast<std::size_t>(kConfidence * resamples)];
 }
 
 double typical_density(const std::vector<float>& densities) {
@@ -65,7 +65,7 @@ struct AutoEvaluator::Candidate {
   int elements;
   PyramidPrecision precision;
   std::string label;
-  std::unique_ptr<Evaluator> built = {};
+  std::unique_ptr<Evaluator> built = {}, counter = {};
 
   std::unique_ptr<Evaluator> make(Device& device, const Surface& surface, bool count) const {
     if (method == Method::triangles) {
@@ -81,7 +81,6 @@ struct AutoEvaluator::Candidate {
     }
     PyramidSettings settings;
     settings.precision = precision;
-    settings.count_elements = count;
     return std::make_unique<PyramidEvaluator>(device, surface, settings);
   }
 };
@@ -144,6 +143,7 @@ void AutoEvaluator::calibrate(const std::vector<Query>& sample) {
   for (const auto& [kind, queries] : by_class) choices_.push_back(choose(kind, queries));
   // What nothing uses is not kept.
   for (std::size_t n = 0; n < candidates_.size(); ++n) {
+    candidates_[n].counter.reset();
     const bool used = std::any_of(candidate_of_.begin(), candidate_of_.end(),
                                   [n](const auto& entry) { return entry.second == n; });
     if (!used) candidates_[n].built.reset();
@@ -153,53 +153,99 @@ void AutoEvaluator::calibrate(const std::vector<Query>& sample) {
 AutoChoice AutoEvaluator::choose(const QueryClass& kind, const std::vector<Query>& sample) {
   constexpr std::size_t fewest_samples = 16;  // that a bound can be told from
   const std::size_t triangles = candidates_.size() - 1;
-  const std::vector<float> expected = evaluator(&candidates_[triangles])->evaluate(sample);
-  AutoChoice best{kind, candidates_[triangles].label, sample.size(), 0, kTrianglesError};
-  best.typical_density = typical_density(expected);
-  best.cost = cost(candidates_[triangles], sample);
+  Samples samples{sample};
+  look_at(&samples, kLooks.front());
+  AutoChoice best{kind, candidates_[triangles].label, samples.expected.size(), 0, kTrianglesError};
+  best.typical_density = typical_density(samples.expected);
+  best.cost = cost(&candidates_[triangles], samples);
   candidate_of_[kind] = triangles;
   if (sample.size() < fewest_samples) return best;
+  samples.most = static_cast<std::size_t>(kMostLooking / best.cost);
   for (const Method method : {Method::pyramid, Method::gaussians}) {
     for (std::size_t n = 0; n < triangles; ++n) {
-      Candidate& candidate = candidates_[n];
-      if (candidate.method != method) continue;
-      AutoChoice choice{kind, candidate.label, sample.size()};
-      if (!keeps_tolerance(&candidate, sample, expected, &choice)) continue;
-      choice.typical_density = best.typical_density;
-      choice.cost = cost(candidate, sample);
-      if (choice.cost < best.cost) best = choice, candidate_of_[kind] = n;
-      break;  // the next ones of this method cost more
+      if (candidates_[n].method != method) continue;
+      AutoChoice choice{kind, candidates_[n].label};
+      choice.cost = best.cost;  // which is the one to beat
+      const Verdict verdict = judge(&candidates_[n], &samples, &choice);
+      if (verdict == Verdict::keeps) {
+        choice.typical_density = typical_density(samples.expected);
+        best = choice, candidate_of_[kind] = n;
+      }
+      if (verdict != Verdict::breaks) break;  // the next ones of this method cost more
     }
   }
   return best;
 }
 
-bool AutoEvaluator::keeps_tolerance(Candidate* candidate, const std::vector<Query>& sample,
-                                    const std::vector<float>& expected, AutoChoice* choice) {
+void AutoEvaluator::look_at(Samples* samples, std::size_t count) {
+  const std::size_t done = samples->expected.size(), end = std::min(count, samples->queries.size());
+  if (end <= done) return;
+  const auto first = samples->queries.begin();
+  const std::vector<float> more =
+      evaluator(&candidates_.back())
+          ->evaluate({first + static_cast<std::ptrdiff_t>(done), first + static_cast<std::ptrdiff_t>(end)});
+  samples->expected.insert(samples->expected.end(), more.begin(), more.end());
+}
+
+AutoEvaluator::Verdict AutoEvaluator::judge(Candidate* candidate, Samples* samples, AutoChoice* choice) {
   Evaluator* const built = evaluator(candidate);
   if (auto* pyramid = dynamic_cast<PyramidEvaluator*>(built);
-      pyramid != nullptr && !pyramid->choose(sample.front()))
-    return false;  // it would only pass them on to the texels
-  const std::vector<float> densities = built->evaluate(sample);
-  std::vector<double> squares(sample.size()), references(sample.size());
-  for (std::size_t n = 0; n < sample.size(); ++n) {
-    const double reference = expected[n];
+      pyramid != nullptr && !pyramid->choose(samples->queries.front()))
+    return Verdict::breaks;  // it would only pass them on to the texels
+  std::optional<double> cost_of_query;
+  for (const std::size_t look : kLooks) {
+    if (look > kLooks.front() &&
+        (samples->expected.size() >= samples->queries.size() || look > samples->most))
+      break;
+    look_at(samples, look);
+    measure(built, *samples, std::min(look, samples->queries.size()), choice);
+    if (!(choice->relative_l2 <= tolerance_)) return Verdict::breaks;
+    if (!cost_of_query) cost_of_query = cost(candidate, *samples);
+    if (!(*cost_of_query < choice->cost)) return Verdict::costs_more;
+    if (choice->upper_bound > tolerance_) continue;
+    choice->cost = *cost_of_query;
+    return Verdict::keeps;
+  }
+  return Verdict::breaks;
+}
+
+void AutoEvaluator::measure(Evaluator* built, const Samples& samples, std::size_t count, AutoChoice* choice) {
+  const auto first = samples.queries.begin();
+  const std::vector<float> densities = built->evaluate({first, first + static_cast<std::ptrdiff_t>(count)});
+  std::vector<double> squares(count), references(count);
+  for (std::size_t n = 0; n < count; ++n) {
+    const double reference = samples.expected[n];
     squares[n] = (densities[n] - reference) * (densities[n] - reference);
     references[n] = reference * reference;
   }
   const double reference = std::accumulate(references.begin(), references.end(), 0.0);
-  if (!(reference > 0)) return false;
-  choice->relative_l2 = std::sqrt(std::accumulate(squares.begin(), squares.end(), 0.0) / reference);
+  choice->samples = count;
+  choice->relative_l2 = reference > 0
+                            ? std::sqrt(std::accumulate(squares.begin(), squares.end(), 0.0) / reference)
+                            : std::numeric_limits<double>::infinity();
   choice->upper_bound =
       bootstrap_bound(squares, references) + kTrianglesError;  // and what triangles are off by
-  return choice->upper_bound <= tolerance_;
 }
 
-double AutoEvaluator::cost(const Candidate& candidate, const std::vector<Query>& sample) {
-  const std::vector<float> counts = candidate.make(device_, surface_, true)->evaluate(sample);
-  const CostModel model = cost_model(candidate.method, candidate.elements);
-  return model.query + model.count * std::accumulate(counts.begin(), counts.end(), 0.0) /
-                           static_cast<double>(counts.size());
+/// Of the first samples.
+double AutoEvaluator::cost(Candidate* candidate, const Samples& samples) {
+  const std::vector<Query> some(samples.queries.begin(),
+                                samples.queries.begin() + static_cast<std::ptrdiff_t>(std::min(
+                                                              kLooks.front(), samples.queries.size())));
+  const CostModel model = candidate->method == Method::triangles   ? triangles_cost()
+                          : candidate->method == Method::gaussians ? gaussians_cost(candidate->elements)
+                                                                   : pyramid_cost();
+  std::vector<float> counts;
+  if (auto* pyramid = dynamic_cast<PyramidEvaluator*>(evaluator(candidate)); pyramid != nullptr) {
+    counts = pyramid->count_elements(some);
+  } else {
+    if (!candidate->counter) candidate->counter = candidate->make(device_, surface_, true);
+    counts = candidate->counter->evaluate(some);
+  }
+  double sum = 0;
+  for (std::size_t n = 0; n < some.size(); ++n)
+    sum += model.of(blocks_reached(some[n], surface_.width(), surface_.height()), counts[n]);
+  return sum / static_cast<double>(some.size());
 }
 
 double AutoEvaluator::error_estimate(const Query& query, double density) const {

@@ -44,8 +44,10 @@ class AutoEvaluator : public Evaluator {
   AutoEvaluator(Device& device, const Surface& surface, double tolerance);
   ~AutoEvaluator() override;
   static constexpr double kLeastTolerance = 5e-4;
+  static constexpr std::size_t kMostSamples = 1024;  ///< of a class, that calibration can use
 
-  /// Chooses for every class of the sample. Queries of other classes go to `triangles`.
+  /// Chooses for every class of the sample, whose queries stand in random order; the first 64 of a class are
+  /// used, and up to kMostSamples where these cannot tell. Queries of other classes go to `triangles`.
   void calibrate(const std::vector<Query>& sample);
   double tolerance() const { return tolerance_; }
   const std::vector<AutoChoice>& choices() const { return choices_; }
@@ -62,10 +64,21 @@ class AutoEvaluator : public Evaluator {
 
  private:
   struct Candidate;
+  /// Queries of a class in random order, and the densities of those looked at so far.
+  struct Samples {
+    const std::vector<Query>& queries;
+    std::vector<float> expected = {};
+    std::size_t most = 0;  ///< of them that may be looked at
+  };
+  enum class Verdict { keeps, breaks, costs_more };
+
   AutoChoice choose(const QueryClass& kind, const std::vector<Query>& sample);
-  bool keeps_tolerance(Candidate* candidate, const std::vector<Query>& sample,
-                       const std::vector<float>& expected, AutoChoice* choice);
-  double cost(const Candidate& candidate, const std::vector<Query>& sample);
+  /// Makes `count` of the expected densities, at least.
+  void look_at(Samples* samples, std::size_t count);
+  /// @param choice its cost is the one to beat, and then the candidate's; and its error.
+  Verdict judge(Candidate* candidate, Samples* samples, AutoChoice* choice);
+  void measure(Evaluator* built, const Samples& samples, std::size_t count, AutoChoice* choice);
+  double cost(Candidate* candidate, const Samples& samples);
   Evaluator* evaluator(Candidate* candidate);
 
   Device& device_;

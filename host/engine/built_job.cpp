@@ -83,7 +83,6 @@ std::unique_ptr<Evaluator> BuiltJob::make_density_evaluator(std::size_t n) {
 /// `auto`, calibrated with the queries of some rows of the image.
 std::unique_ptr<Evaluator> BuiltJob::calibrated_evaluator(std::size_t n) {
   constexpr int most_rows = 24;
-  constexpr std::size_t samples_a_class = 64;
   const Surface& surface = *surfaces_[n];
   const int height = job_.image.height, rows = std::min(height, most_rows);
   std::vector<Query> queries;
@@ -92,8 +91,8 @@ std::unique_ptr<Evaluator> BuiltJob::calibrated_evaluator(std::size_t n) {
       if (plan_.evaluator_of_material[glint.material] == static_cast<int>(n)) queries.push_back(glint.query);
   const double tolerance = job_.accuracy.tolerance;
   auto evaluator = std::make_unique<AutoEvaluator>(device_, surface, tolerance);
-  evaluator->calibrate(calibration_sample(queries.size(), samples_a_class, surface.width(), surface.height(),
-                                          [&](std::size_t k) { return queries[k]; }));
+  evaluator->calibrate(calibration_sample(queries.size(), AutoEvaluator::kMostSamples, surface.width(),
+                                          surface.height(), [&](std::size_t k) { return queries[k]; }));
   for (const AutoChoice& choice : evaluator->choices())
     notes_.push_back(
         fmt::format("surface {}: auto takes {} for footprints of about {:.3g} texels: relative L2 {:.2g}, at "

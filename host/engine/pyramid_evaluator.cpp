@@ -60,12 +60,12 @@ PyramidEvaluator::PyramidEvaluator(Device& device, const Surface& surface, const
       wave_form_(settings.wave_form.value_or(device.wave_form())),
       cutoff_(cutoff_for(settings.precision.cutoff_error)) {}
 
-std::unique_ptr<PendingDensities> PyramidEvaluator::start(const std::vector<Query>& queries) {
+std::unique_ptr<PendingDensities> PyramidEvaluator::start(const std::vector<Query>& queries, bool counting) {
   std::map<PyramidChoice, Share> by_level;
   std::vector<std::size_t> small;
   const auto add = [&](const PyramidChoice& choice, std::size_t place, double weight) {
     by_level[choice].places.push_back(place);
-    by_level[choice].weights.push_back(static_cast<float>(settings_.count_elements ? 1 : weight));
+    by_level[choice].weights.push_back(static_cast<float>(counting ? 1 : weight));
   };
   for (std::size_t n = 0; n < queries.size(); ++n) {
     const std::optional<PyramidChoice> choice = choose(queries[n]);
@@ -85,27 +85,28 @@ std::unique_ptr<PendingDensities> PyramidEvaluator::start(const std::vector<Quer
   };
   for (auto& [choice, share] : by_level) {
     take(share.places);
-    all->add(start_merged(some, choice, cutoff_, gain(choice)), std::move(share));
+    PyramidLevelBatches& batches = level(choice);
+    all->add(counting ? batches.start_count(level_queries(some, choice, cutoff_, 1))
+                      : batches.start(level_queries(some, choice, cutoff_, gain(choice))),
+             std::move(share));
   }
   if (!small.empty()) {
     take(small);
     const std::vector<float> ones(small.size(), 1.0f);
-    all->add(texels()->start(some), {std::move(small), ones});
+    all->add(texels(counting)->start(some), {std::move(small), ones});
   }
   return all;
 }
 
-std::unique_ptr<PendingDensities> PyramidEvaluator::start_merged(const std::vector<Query>& queries,
-                                                                 const PyramidChoice& choice, double cutoff,
-                                                                 double gain) {
-  PyramidLevelBatches& batches = level(choice);
-  std::vector<device_types::mica_pyramid_query> level_queries(queries.size());
+std::vector<device_types::mica_pyramid_query> PyramidEvaluator::level_queries(
+    const std::vector<Query>& queries, const PyramidChoice& choice, double cutoff, double gain) {
+  const PyramidShape& shape = level(choice).shape();
+  std::vector<device_types::mica_pyramid_query> result(queries.size());
   tbb::parallel_for(std::size_t{0}, queries.size(), [&](std::size_t n) {
-    level_queries[n] =
-        to_pyramid_query(queries[n], batches.shape(), surface_.interpolation(), cutoff, choice.uniform);
-    level_queries[n].map.scale *= static_cast<float>(gain);
+    result[n] = to_pyramid_query(queries[n], shape, surface_.interpolation(), cutoff, choice.uniform);
+    result[n].map.scale *= static_cast<float>(gain);
   });
-  return batches.start(std::move(level_queries));
+  return result;
 }
 
 /// What culling drops has one sign. On average it is put back: the factor that brings queries all over the
@@ -113,7 +114,6 @@ std::unique_ptr<PendingDensities> PyramidEvaluator::start_merged(const std::vect
 double PyramidEvaluator::gain(const PyramidChoice& choice) {
   const auto found = gains_.find(choice);
   if (found != gains_.end()) return found->second;
-  if (settings_.count_elements) return 1;
   constexpr int samples = 512;
   constexpr double small_cutoff_error = 1e-6;
   const Stopwatch watch;
@@ -136,9 +136,11 @@ double PyramidEvaluator::gain(const PyramidChoice& choice) {
     query.half_vector =
         (normal + distance * Eigen::Vector2d(std::cos(angle), std::sin(angle))).cwiseMax(-1).cwiseMin(1);
   }
-  const std::vector<float> culled = start_merged(queries, choice, cutoff_, 1)->wait();
-  const std::vector<float> complete =
-      start_merged(queries, choice, cutoff_for(small_cutoff_error), 1)->wait();
+  PyramidLevelBatches& batches = level(choice);
+  const auto evaluate = [&](double cutoff) {
+    return batches.start(level_queries(queries, choice, cutoff, 1))->wait();
+  };
+  const std::vector<float> culled = evaluate(cutoff_), complete = evaluate(cutoff_for(small_cutoff_error));
   double product = 0, square = 0;
   for (int n = 0; n < samples; ++n) {
     product += static_cast<double>(culled[n]) * complete[n];
@@ -164,8 +166,11 @@ int PyramidEvaluator::finest_block(int cell_class) {
   const double width = cell_width(cell_class, settings_.precision);
   const int whole_map = whole_map_block(surface_.width(), surface_.height());
   int block = kFinestBlock;
-  while (block < whole_map && estimate_level_bytes(surface_, width, block) > settings_.level_bytes)
-    block *= 2;
+  while (block < whole_map) {
+    std::size_t bytes = estimate_level_bytes(surface_, width, block);
+    if (bytes <= settings_.level_bytes) break;
+    for (; block < whole_map && bytes > settings_.level_bytes; bytes /= 4) block *= 2;  // at best
+  }
   finest_block_[cell_class] = block;
   build_seconds_ += watch.seconds();
   return block;
@@ -180,20 +185,21 @@ PyramidLevelBatches& PyramidEvaluator::level(const PyramidChoice& choice) {
   build_moment_pyramid(surface_, cell_width(choice.cell_class, settings_.precision), choice.block,
                        [&](int block, const PyramidLevel& built) {
                          levels_.try_emplace(PyramidChoice{choice.cell_class, block, false}, device_, built,
-                                             wave_form_, settings_.count_elements, settings_.batch_queries);
+                                             wave_form_, settings_.batch_queries);
                        });
   build_seconds_ += watch.seconds();
   return levels_.at(key);
 }
 
-Evaluator* PyramidEvaluator::texels() {
-  if (texels_) return texels_.get();
+Evaluator* PyramidEvaluator::texels(bool counting) {
+  std::unique_ptr<Evaluator>& texels = counting ? counting_texels_ : texels_;
+  if (texels) return texels.get();
   TriangleSettings settings;
   settings.batch_queries = settings_.batch_queries;
   settings.wave_form = wave_form_;
-  settings.count_flops = settings_.count_elements;
-  texels_ = std::make_unique<TriangleEvaluator>(device_, surface_, settings);
-  return texels_.get();
+  settings.count_flops = counting;
+  texels = std::make_unique<TriangleEvaluator>(device_, surface_, settings);
+  return texels.get();
 }
 
 std::size_t PyramidEvaluator::device_bytes() const {

@@ -16,8 +16,7 @@ struct PyramidSettings {
   PyramidPrecision precision;
   std::size_t level_bytes = std::size_t{48} << 20;  ///< of a level, at most; finer ones are not built
   std::size_t batch_queries = 1 << 17;              ///< queries a launch, at most
-  bool count_elements = false;        ///< densities become the numbers of elements summed, for benchmarks
-  std::optional<WaveForm> wave_form;  ///< default: what suits the device
+  std::optional<WaveForm> wave_form;                ///< default: what suits the device
 };
 
 /// `pyramid`: merged elements, whose number does not grow with the footprint; kernels/pyramid.cl. Levels are
@@ -28,11 +27,18 @@ class PyramidEvaluator : public Evaluator {
   /// Builds nothing yet. `device` and `surface` must outlive the evaluator.
   PyramidEvaluator(Device& device, const Surface& surface, const PyramidSettings& settings = {});
 
-  std::unique_ptr<PendingDensities> start(const std::vector<Query>& queries) override;
+  std::unique_ptr<PendingDensities> start(const std::vector<Query>& queries) override {
+    return start(queries, false);
+  }
   std::string name() const override { return "pyramid"; }
   std::size_t device_bytes() const override;
   double build_seconds() const override;
   double device_seconds() const override;
+
+  /// Numbers of elements that queries sum; of those that go to the texels, of what their kernel counts.
+  std::vector<float> count_elements(const std::vector<Query>& queries) {
+    return start(queries, true)->wait();
+  }
 
   /// The level that a query reads, none: the texels.
   std::optional<PyramidChoice> choose(const Query& query);
@@ -44,11 +50,13 @@ class PyramidEvaluator : public Evaluator {
   WaveForm wave_form() const { return wave_form_; }
 
  private:
+  std::unique_ptr<PendingDensities> start(const std::vector<Query>& queries, bool counting);
   int finest_block(int cell_class);
-  std::unique_ptr<PendingDensities> start_merged(const std::vector<Query>& queries,
-                                                 const PyramidChoice& choice, double cutoff, double gain);
+  std::vector<device_types::mica_pyramid_query> level_queries(const std::vector<Query>& queries,
+                                                              const PyramidChoice& choice, double cutoff,
+                                                              double gain);
   double gain(const PyramidChoice& choice);
-  Evaluator* texels();
+  Evaluator* texels(bool counting);
 
   Device& device_;
   const Surface& surface_;
@@ -58,7 +66,7 @@ class PyramidEvaluator : public Evaluator {
   std::map<int, int> finest_block_;  // by cell class
   std::map<PyramidChoice, PyramidLevelBatches> levels_;
   std::map<PyramidChoice, double> gains_;
-  std::unique_ptr<Evaluator> texels_;
+  std::unique_ptr<Evaluator> texels_, counting_texels_;
 };
 
 }  // namespace mica

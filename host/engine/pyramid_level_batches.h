@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "host/build/moment_pyramid.h"
@@ -14,13 +15,16 @@ namespace mica {
 class PyramidLevelBatches {
  public:
   /// Uploads the level. `device` must outlive this.
-  PyramidLevelBatches(Device& device, const PyramidLevel& level, WaveForm wave_form, bool count_elements,
+  PyramidLevelBatches(Device& device, const PyramidLevel& level, WaveForm wave_form,
                       std::size_t batch_queries);
 
   /// Sends queries, with any slot; densities come in the order of the queries.
   std::unique_ptr<PendingDensities> start(std::vector<device_types::mica_pyramid_query> queries) {
     return batches_.start(std::move(queries));
   }
+
+  /// The same, with the numbers of elements summed in place of densities.
+  std::unique_ptr<PendingDensities> start_count(std::vector<device_types::mica_pyramid_query> queries);
 
   const PyramidShape& shape() const { return shape_; }
   /// In the order of the kernels' arguments: groups, top nodes, nodes, records.
@@ -29,9 +33,16 @@ class PyramidLevelBatches {
   double device_seconds() const { return batches_.device_seconds(); }
 
  private:
+  using Batches = MapBatches<device_types::mica_pyramid_query>;
+  Batches make_batches(bool count_elements) const;
+
+  Device& device_;
   PyramidShape shape_;
+  WaveForm wave_form_;
+  std::size_t batch_queries_, bytes_;
   std::vector<cl::Buffer> buffers_;
-  MapBatches<device_types::mica_pyramid_query> batches_;
+  Batches batches_;
+  std::optional<Batches> counting_;  // on the same buffers
 };
 
 }  // namespace mica

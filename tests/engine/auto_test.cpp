@@ -72,6 +72,28 @@ TEST(Auto, TakesThePyramidForLargeFootprintsAndTexelsForSmallOnes) {
   EXPECT_EQ(chooser->choices().back().evaluator.find("pyramid"), 0u) << chooser->choices().back().evaluator;
 }
 
+/// Between what 64 samples of a cheap evaluator show and what they prove, more samples tell.
+TEST(Auto, LooksAtMoreSamplesWhereFewCannotTell) {
+  const Surface surface = spectrum();
+  std::vector<Query> queries = mixed_queries(surface, 3 * 1024, 14);
+  for (std::size_t n = 0; n < 1024; ++n) queries[n] = queries[3 * n + 1];  // of 8 texels
+  queries.resize(1024);
+  const std::vector<Query> few(queries.begin(), queries.begin() + 64);
+  const auto choice_of = [&](double tolerance, const std::vector<Query>& sample) {
+    AutoEvaluator chooser(device(), surface, tolerance);
+    chooser.calibrate(sample);
+    return chooser.choices().front();
+  };
+  const AutoChoice loose = choice_of(0.1, few);
+  ASSERT_EQ(loose.samples, 64u);
+  const double tolerance = 0.6 * loose.upper_bound + 0.4 * loose.relative_l2;
+  const AutoChoice strict = choice_of(tolerance, few), told = choice_of(tolerance, queries);
+  EXPECT_GT(strict.cost, 1.1 * loose.cost) << strict.evaluator;
+  EXPECT_EQ(told.evaluator, loose.evaluator);
+  EXPECT_GT(told.samples, 64u);
+  EXPECT_LE(told.upper_bound, tolerance);
+}
+
 TEST(Auto, AnswersAreTheSameInAnyBatch) {
   const Surface surface = spectrum();
   const std::vector<Query> queries = mixed_queries(surface, 90, 10);

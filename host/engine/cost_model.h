@@ -1,0 +1,24 @@
+#pragma once
+
+#include "host/base/query.h"
+
+namespace mica {
+
+/// Nanoseconds of one core, of a query, of one block of the map that its footprint reaches, and of one thing
+/// that its kernel counts. Measured on one machine: only their ratios matter. `pyramid_bench --costs` fits
+/// them.
+struct CostModel {
+  double query, block, count;
+
+  double of(double blocks, double counted) const { return query + block * blocks + count * counted; }
+};
+
+/// What one block is to the walks of kernels/walk_leaves.h: how many the square around a footprint touches.
+double blocks_reached(const Query& query, int map_width, int map_height);
+
+/// Of `gaussians` with so many elements a texel and axis: 1, 2 or 4.
+CostModel gaussians_cost(int elements);
+CostModel triangles_cost();
+CostModel pyramid_cost();
+
+}  // namespace mica
