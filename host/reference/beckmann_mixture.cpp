@@ -4,6 +4,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
+#include <algorithm>
 #include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
 
@@ -22,7 +23,7 @@ struct Point {
   double offset, weight;
 };
 
-/// Gauss-Legendre points of the cells under the kernel.
+/// Gauss-Legendre points of the cells under the kernel, in ascending order.
 const std::vector<Point>& kernel_points() {
   static const std::vector<Point> points = [] {
     using Rule = boost::math::quadrature::gauss<double, 6>;
@@ -35,6 +36,7 @@ const std::vector<Point>& kernel_points() {
         }
       }
     }
+    std::sort(all.begin(), all.end(), [](const Point& a, const Point& b) { return a.offset < b.offset; });
     return all;
   }();
   return points;
@@ -54,33 +56,49 @@ Eigen::Matrix2d slope_jacobian(const Eigen::Vector2d& slope) {
   return -std::sqrt(w) * (Eigen::Matrix2d::Identity() + slope * slope.transpose());
 }
 
+/// Where a point lies on the map along an axis: between the texels `cell` and `cell` + 1.
+struct Sample {
+  long cell;
+  double fraction, weight;
+};
+
+/// The points under the kernel of element `index`. @param spacing of elements, in texels.
+std::vector<Sample> samples_of(long index, double spacing) {
+  std::vector<Sample> samples;
+  for (const Point& point : kernel_points()) {
+    const double x = (static_cast<double>(index) + 0.5 + point.offset) * spacing, cell = std::floor(x);
+    samples.push_back({std::lround(cell), x - cell, point.weight});
+  }
+  return samples;
+}
+
 /// The lobe of element (a, b), without roughness.
 SlopeLobe fit(const Surface& surface, int elements, long a, long b) {
-  const double h = 1.0 / elements;
   SlopeLobe lobe;
   if (surface.interpolation() == Interpolation::nearest) {
     lobe.mean = slope_of(surface.texel(a / elements, b / elements));
     return lobe;
   }
-  Eigen::Vector2d first = Eigen::Vector2d::Zero();
-  Eigen::Matrix2d second = Eigen::Matrix2d::Zero();
-  double weights = 0;
-  for (const Point& v : kernel_points()) {
-    for (const Point& u : kernel_points()) {
-      const double weight = u.weight * v.weight;
-      const double x = (static_cast<double>(a) + 0.5 + u.offset) * h,
-                   y = (static_cast<double>(b) + 0.5 + v.offset) * h;
-      const long i = std::lround(std::floor(x)), j = std::lround(std::floor(y));
-      const double f = x - static_cast<double>(i), g = y - static_cast<double>(j);
-      const Eigen::Vector2d slope =
-          slope_of((1 - g) * ((1 - f) * surface.texel(i, j) + f * surface.texel(i + 1, j)) +
-                   g * ((1 - f) * surface.texel(i, j + 1) + f * surface.texel(i + 1, j + 1)));
-      first += weight * slope, second += weight * slope * slope.transpose();
-      weights += weight;
+  const std::vector<Sample> across = samples_of(a, 1.0 / elements);
+  std::vector<Eigen::Vector2d> row(across.back().cell - across.front().cell +
+                                   2);                            // of the map at a point's v
+  double weights = 0, m1 = 0, m2 = 0, m11 = 0, m12 = 0, m22 = 0;  // sums of products of the slope's parts
+  for (const Sample& v : samples_of(b, 1.0 / elements)) {
+    for (std::size_t n = 0; n < row.size(); ++n) {
+      const long i = across.front().cell + static_cast<long>(n);
+      row[n] = (1 - v.fraction) * surface.texel(i, v.cell) + v.fraction * surface.texel(i, v.cell + 1);
+    }
+    for (const Sample& u : across) {
+      const Eigen::Vector2d* pair = &row[u.cell - across.front().cell];
+      const Eigen::Vector2d slope = slope_of((1 - u.fraction) * pair[0] + u.fraction * pair[1]);
+      const double weight = u.weight * v.weight, p = slope.x(), q = slope.y();
+      weights += weight, m1 += weight * p, m2 += weight * q;
+      m11 += weight * p * p, m12 += weight * p * q, m22 += weight * q * q;
     }
   }
-  lobe.mean = first / weights;
-  lobe.covariance = second / weights - lobe.mean * lobe.mean.transpose();
+  lobe.mean = Eigen::Vector2d(m1, m2) / weights;
+  lobe.covariance << m11, m12, m12, m22;
+  lobe.covariance = (lobe.covariance / weights - lobe.mean * lobe.mean.transpose()).eval();
   return lobe;
 }
 

@@ -18,9 +18,9 @@ struct SlopeLobe {
 /// [Che18]'s mixture of Beckmann lobes in double precision: plain sums over every element under a footprint.
 ///
 /// Elements lie as those of GaussianMixture. A lobe has the moments of the slopes of the bilinear map under
-/// its position kernel, by 32 midpoints a spacing and axis, blurred by the roughness: a Gaussian on the disk,
-/// of which slopes see the linear part at the lobe's mean. Weights are Gaussians of the footprint's
-/// covariance less the kernel's, along each axis no less than the kernel's, divided by their sum.
+/// its position kernel, by 6 points of Gauss-Legendre a spacing and axis, blurred by the roughness: a
+/// Gaussian on the disk, of which slopes see the linear part at the lobe's mean. Weights are Gaussians of the
+/// footprint's covariance less the kernel's, along each axis no less than the kernel's, divided by their sum.
 /// Thread-safe.
 class BeckmannMixture {
  public:
