@@ -26,7 +26,7 @@ struct Mixture {
   const char* name;
   double flops_an_element;
 };
-constexpr Mixture kMixtures[] = {{"gaussians", 105}, {"beckmanns", 92}};
+constexpr Mixture kMixtures[] = {{"gaussians", 94}, {"beckmanns", 89}};
 
 std::unique_ptr<Evaluator> make_mixture(const Mixture& mixture, Device& device, const Surface& surface,
                                         const MixtureSettings& settings) {

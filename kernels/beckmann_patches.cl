@@ -37,7 +37,6 @@ typedef struct {
   wave_float q_position;  // of its lobes
   wave_float view, light, projected;
   int all;  // lobes are visited
-  uint dense, turned;  // the leaves, of the tile that is visited, that matter to the density and to the areas
 } leaf_results;
 
 // Lanes of the children with lobes that do not face direction (o_x, o_y, o_z) as a whole.
@@ -58,22 +57,23 @@ static inline wave_int turn_away(global const mica_lobe_query* query, const priv
   return wave_mask(facing * facing <= FACING_DEVIATIONS * FACING_DEVIATIONS * variance);
 }
 
-static inline uint surviving_lobes(global const mica_patch_query* query, private leaf_results* results,
-                                   global const short* node, int i, int j, int child_size, WAVE_SHARED int* scratch) {
+// Bits of the children that matter to the density, and in the high half of those that matter to the areas.
+static inline uint surviving_lobes(global const mica_patch_query* query, int all, global const short* node, int i, int j,
+                                   int child_size, WAVE_SHARED int* scratch) {
   lobe_children c;
   load_children(&query->lobe, node, i, j, child_size, &c);
   const wave_int near = c.boxes.present & wave_mask(c.q_position <= query->lobe.map.cutoff);
-  results->dense = wave_ballot(matter_to_density(&query->lobe, &c), scratch);
-  results->turned = 0;
-  if (results->all) {
-    results->turned = wave_ballot(near, scratch);
+  const uint dense = wave_ballot(matter_to_density(&query->lobe, &c), scratch);
+  uint turned = 0;
+  if (all) {
+    turned = wave_ballot(near, scratch);
   } else if (MICA_MASKING == 2) {
-    results->turned =
+    turned =
         wave_ballot(near & (turn_away(&query->lobe, &c, query->view_x, query->view_y, query->view_z) |
                             turn_away(&query->lobe, &c, query->light_x, query->light_y, query->light_z)),
                     scratch);
   }
-  return results->dense | results->turned;
+  return dense | turned << 16;
 }
 
 static inline void view_lobes(const private lobe_leaf* lobes, float roughness, float o_x, float o_y, float o_z,
@@ -109,14 +109,14 @@ static inline void add_areas(private leaf_results* results) {
   if (results->all) results->projected = fma(weight, results->lit.facing, results->projected);
 }
 
-// @param child of the leaf, in its tile.
-static inline void take_lobes(global const mica_patch_query* query, global const short* leaves, int leaf, int child, int i,
+// @param reasons why the leaf is visited: bit 0 for its density, bit 16 for its areas.
+static inline void take_lobes(global const mica_patch_query* query, global const short* leaves, int leaf, uint reasons, int i,
                               int j, int room_i, int room_j, private leaf_results* results) {
   lobe_leaf lobes;
   load_lobes(leaves + leaf * MICA_LOBE_LEAF, query->lobe.map.inverse_roughness, &lobes);
   const wave_float q_position = lobe_positions(&query->lobe.map, i, j, room_i, room_j);
-  if ((results->dense >> child) & 1) add_lobes(&query->lobe, &lobes, q_position, &results->density);
-  if (!((results->turned >> child) & 1)) return;
+  if (reasons & 1u) add_lobes(&query->lobe, &lobes, q_position, &results->density);
+  if (!(reasons >> 16 & 1u)) return;
   add_areas(results);
   const float roughness = 1.0f / query->lobe.map.inverse_roughness;
   view_lobes(&lobes, roughness, query->view_x, query->view_y, query->view_z, &results->seen);
@@ -130,9 +130,9 @@ static inline void take_lobes(global const mica_patch_query* query, global const
 #define LEAF_DATA short
 #define LEAF_AT(leaf_i, leaf_j) ((block.index * 16 + tile) * 16 + leaf)
 #define LEAF_SURVIVORS(query, node, i, j, child_size, scratch) \
-  surviving_lobes(query, results, node, i, j, child_size, scratch)
+  surviving_lobes(query, results->all, node, i, j, child_size, scratch)
 #define LEAF_TAKE(query, lobes, at, i, j, room_i, room_j, results, scratch) \
-  take_lobes(query, lobes, at, leaf, i, j, room_i, room_j, results)
+  take_lobes(query, lobes, at, reasons >> leaf, i, j, room_i, room_j, results)
 #include "walk_leaves.h"
 
 #if MICA_MASKING == 1
@@ -176,7 +176,6 @@ kernel void beckmann_patches(global const mica_patch_query* restrict queries, in
   begin_lobes(&results.density);
   begin_areas(&results);
   results.all = query->slopes.offset < 0;
-  results.dense = results.turned = 0u;
   float view = 0.0f, light = 0.0f, projected = 0.0f;
   if (!results.all) {
     slope_lobe lobe = footprint_slopes(&query->slopes, pyramid, scratch);

@@ -3,7 +3,8 @@
 //   LEAF_QUERY                the query's struct, with LEAF_PLACE(query) its mica_map_query (default: itself);
 //   LEAF_NODE_STRIDE          shorts a node;
 //   LEAF_DATA, LEAF_AT(leaf_i, leaf_j)   what leaves are stored as (default: ints), and where in a `block` (default: normals);
-//   LEAF_SURVIVORS(query, node, i, j, child_size, scratch)   bits of the children that matter;
+//   LEAF_SURVIVORS(query, node, i, j, child_size, scratch)   bits of the children that matter, for one reason in the low half
+//                             and for another in the high half: LEAF_TAKE finds them in `reasons`;
 //   LEAF_WALK                 the function's name (default: walk_leaves); a kernel that walks in two ways includes this twice;
 //   LEAF_RESULTS (default: leaf_results), LEAF_TAKE(query, normals, at, i, j, room_i, room_j, results, scratch)   what a
 //                             leaf adds to.
@@ -42,14 +43,22 @@ static inline void LEAF_WALK(global const LEAF_QUERY* query, mica_map_grid grid,
       const map_block block = locate_block(grid, place, block_x, block_y);
       const int map_room_i = grid.width - (block.index % grid.blocks_x) * MICA_BLOCK;
       const int map_room_j = grid.height - (block.index / grid.blocks_x) * MICA_BLOCK;
-      uint tiles = LEAF_SURVIVORS(query, block_nodes + block.index * LEAF_NODE_STRIDE, block.i, block.j, MICA_TILE,
-                                  scratch);
-      for (; tiles; tiles &= tiles - 1) {
-        const int tile = lowest_bit(tiles);
-        const int tile_i = (tile & 3) * MICA_TILE, tile_j = (tile >> 2) * MICA_TILE;
-        uint leaves = LEAF_SURVIVORS(query, tile_nodes + (block.index * 16 + tile) * LEAF_NODE_STRIDE,
-                                     block.i + tile_i, block.j + tile_j, MICA_LEAF, scratch);
-        for (; leaves; leaves &= leaves - 1) {
+      // All tiles before all leaves: a test is a long chain of steps, and they overlap.
+      int tiles[16], count = 0;
+      uint leaves_of[16];
+      const uint tile_reasons =
+          LEAF_SURVIVORS(query, block_nodes + block.index * LEAF_NODE_STRIDE, block.i, block.j, MICA_TILE, scratch);
+      for (uint left = (tile_reasons | tile_reasons >> 16) & 0xffffu; left; left &= left - 1) {
+        const int tile = lowest_bit(left);
+        tiles[count] = tile;
+        leaves_of[count++] = LEAF_SURVIVORS(query, tile_nodes + (block.index * 16 + tile) * LEAF_NODE_STRIDE,
+                                            block.i + (tile & 3) * MICA_TILE, block.j + (tile >> 2) * MICA_TILE, MICA_LEAF,
+                                            scratch);
+      }
+      for (int n = 0; n < count; ++n) {
+        const int tile = tiles[n], tile_i = (tile & 3) * MICA_TILE, tile_j = (tile >> 2) * MICA_TILE;
+        const uint reasons = leaves_of[n];
+        for (uint leaves = (reasons | reasons >> 16) & 0xffffu; leaves; leaves &= leaves - 1) {
           const int leaf = lowest_bit(leaves);
           const int leaf_i = tile_i + (leaf & 3) * MICA_LEAF, leaf_j = tile_j + (leaf >> 2) * MICA_LEAF;
           LEAF_TAKE(query, normals, LEAF_AT(leaf_i, leaf_j), block.i + leaf_i, block.j + leaf_j,
