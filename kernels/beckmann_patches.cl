@@ -23,11 +23,19 @@
 
 // Least o_z - p.o_xy of the mean slope p at which most lobes are left out.
 #define LEAST_FACING 0.1f
-// Standard deviations beyond which a lobe faces a direction as a whole; it hides 4e-7 of its width.
-#define FACING_DEVIATIONS 4.5f
+// Standard deviations beyond which a lobe faces a direction as a whole; it hides 6e-5 of its width.
+#define FACING_DEVIATIONS 3.5f
+
+// What a direction sees of lobes: the projected area of their mean normals, and the variance of that.
+typedef struct {
+  wave_float facing, variance;
+} lobe_view;
 
 typedef struct {
-  wave_float density, view, light, projected;
+  lobe_sum density;
+  lobe_view seen, lit;    // by view and light, of the leaf that is to be added next
+  wave_float q_position;  // of its lobes
+  wave_float view, light, projected;
   int all;  // lobes are visited
   uint dense, turned;  // the leaves, of the tile that is visited, that matter to the density and to the areas
 } leaf_results;
@@ -68,20 +76,37 @@ static inline uint surviving_lobes(global const mica_patch_query* query, private
   return results->dense | results->turned;
 }
 
-// Areas of lobes that a direction sees, less the part that is linear in the mean unless all lobes are visited; and projected
-// areas of their mean normals, negative where those turn away.
-static inline wave_float lobe_areas(const private lobe_leaf* lobes, float roughness, int all, float o_x, float o_y,
-                                    float o_z, private wave_float* projected) {
+static inline void view_lobes(const private lobe_leaf* lobes, float roughness, float o_x, float o_y, float o_z,
+                              private lobe_view* view) {
   const wave_float p_x = lobes->base_x + lobes->offset_x, p_y = lobes->base_y + lobes->offset_y;
-  const wave_float along = fma(p_x, o_x, p_y * o_y), m = o_z - along;
+  const wave_float along = fma(p_x, o_x, p_y * o_y);
+  view->facing = o_z - along;
   // v = B o_xy; t^2 = v^T (S + sigma_r^2 I) v
   const wave_float w = fma(p_x, p_x, fma(p_y, p_y, 1.0f));
   const wave_float v_x = fma(along, p_x, o_x), v_y = fma(along, p_y, o_y);
   const wave_float l_1 = fma(lobes->spread_xx, v_x, lobes->spread_yx * v_y), l_2 = lobes->spread_yy * v_y;
-  const wave_float variance = w * fma(l_1, l_1, fma(l_2, l_2, roughness * roughness * fma(v_x, v_x, v_y * v_y)));
-  const wave_float hidden = hidden_area(m, sqrt(max(variance, 1e-16f)));
-  *projected = m;
-  return all ? max(m + hidden, 0.0f) : hidden;
+  view->variance = (w * roughness * roughness) * fma(l_1, l_1, fma(l_2, l_2, fma(v_x, v_x, v_y * v_y)));
+}
+
+// Areas, less the part that is linear in the mean unless all lobes are visited.
+static inline wave_float lobe_areas(const private lobe_view* view, int all) {
+  const wave_float hidden = hidden_area(view->facing, max(view->variance, 1e-16f));
+  return all ? max(view->facing + hidden, 0.0f) : hidden;
+}
+
+static inline void begin_areas(private leaf_results* results) {
+  const wave_float zero = 0.0f, nowhere = NOWHERE;
+  results->view = results->light = results->projected = zero;
+  results->seen.facing = results->seen.variance = results->lit.facing = results->lit.variance = zero;
+  results->q_position = nowhere;
+}
+
+// Adds the areas of the leaf that is under way.
+static inline void add_areas(private leaf_results* results) {
+  const wave_float weight = gaussian_exp2(max(-results->q_position, -126.0f));
+  results->view = fma(weight, lobe_areas(&results->seen, results->all), results->view);
+  results->light = fma(weight, lobe_areas(&results->lit, results->all), results->light);
+  if (results->all) results->projected = fma(weight, results->lit.facing, results->projected);
 }
 
 // @param child of the leaf, in its tile.
@@ -89,25 +114,14 @@ static inline void take_lobes(global const mica_patch_query* query, global const
                               int j, int room_i, int room_j, private leaf_results* results) {
   lobe_leaf lobes;
   load_lobes(leaves + leaf * MICA_LOBE_LEAF, query->lobe.map.inverse_roughness, &lobes);
-  const wave_float q_position = lobe_positions(&query->lobe.map, i, j);
-  const wave_int inside_map = wave_mask((WAVE_LANE & 3) < room_i) & wave_mask((WAVE_LANE >> 2) < room_j);
-  const wave_float nothing = 0.0f;
-  if ((results->dense >> child) & 1)
-    results->density += wave_select(nothing, lobe_densities(&query->lobe, &lobes, q_position), inside_map);
+  const wave_float q_position = lobe_positions(&query->lobe.map, i, j, room_i, room_j);
+  if ((results->dense >> child) & 1) add_lobes(&query->lobe, &lobes, q_position, &results->density);
   if (!((results->turned >> child) & 1)) return;
+  add_areas(results);
   const float roughness = 1.0f / query->lobe.map.inverse_roughness;
-  lobes.spread_xx *= roughness, lobes.spread_yx *= roughness, lobes.spread_yy *= roughness;
-  const wave_float weight =
-      wave_select(nothing, gaussian_exp2(max((-EXP2_SCALE * EXP2_SCALE) * q_position, -126.0f)), inside_map);
-  const int all = results->all;
-  wave_float projected;
-  const wave_float view =
-      lobe_areas(&lobes, roughness, all, query->view_x, query->view_y, query->view_z, &projected);
-  const wave_float light =
-      lobe_areas(&lobes, roughness, all, query->light_x, query->light_y, query->light_z, &projected);
-  results->view = fma(weight, view, results->view);
-  results->light = fma(weight, light, results->light);
-  if (all) results->projected = fma(weight, projected, results->projected);
+  view_lobes(&lobes, roughness, query->view_x, query->view_y, query->view_z, &results->seen);
+  view_lobes(&lobes, roughness, query->light_x, query->light_y, query->light_z, &results->lit);
+  results->q_position = q_position;
 }
 
 #define LEAF_QUERY mica_patch_query
@@ -124,10 +138,10 @@ static inline void take_lobes(global const mica_patch_query* query, global const
 #if MICA_MASKING == 1
 // For the density alone, which is all that is left to do once the pyramid has said the areas.
 #define LEAF_WALK walk_dense_leaves
-#define LEAF_RESULTS wave_float
+#define LEAF_RESULTS lobe_sum
 #define LEAF_SURVIVORS(query, node, i, j, child_size, scratch) dense_lobes(&(query)->lobe, node, i, j, child_size, scratch)
-#define LEAF_TAKE(query, lobes, at, i, j, room_i, room_j, sum, scratch) \
-  sum_lobes(&(query)->lobe, lobes, at, i, j, room_i, room_j, sum)
+#define LEAF_TAKE(query, lobes, at, i, j, room_i, room_j, results, scratch) \
+  sum_lobes(&(query)->lobe, lobes, at, i, j, room_i, room_j, results)
 #include "walk_leaves.h"
 #endif
 
@@ -140,8 +154,8 @@ static inline float facing(slope_lobe lobe, float o_x, float o_y, float o_z) {
 static inline float lobe_area(slope_lobe lobe, float o_x, float o_y, float o_z) {
   const float m = facing(lobe, o_x, o_y, o_z);
   const float variance = fma(lobe.xx * o_x, o_x, fma(2.0f * lobe.xy * o_x, o_y, lobe.yy * o_y * o_y));
-  const wave_float wave_m = m, wave_t = sqrt(max(variance, 1e-16f));
-  const wave_float hidden = hidden_area(wave_m, wave_t);
+  const wave_float wave_m = m, wave_variance = max(variance, 1e-16f);
+  const wave_float hidden = hidden_area(wave_m, wave_variance);
 #if MICA_WAVE_ITEMS
   return max(m + hidden, 0.0f);
 #else
@@ -158,8 +172,11 @@ kernel void beckmann_patches(global const mica_patch_query* restrict queries, in
   WAVE_DECLARE_SCRATCH(scratch);
   if (WAVE_ITEM_INDEX >= query_count) return;
   global const mica_patch_query* query = queries + WAVE_ITEM_INDEX;
-  const wave_float nothing = 0.0f;
-  leaf_results results = {nothing, nothing, nothing, nothing, query->slopes.offset < 0, 0u, 0u};
+  leaf_results results;
+  begin_lobes(&results.density);
+  begin_areas(&results);
+  results.all = query->slopes.offset < 0;
+  results.dense = results.turned = 0u;
   float view = 0.0f, light = 0.0f, projected = 0.0f;
   if (!results.all) {
     slope_lobe lobe = footprint_slopes(&query->slopes, pyramid, scratch);
@@ -182,8 +199,9 @@ kernel void beckmann_patches(global const mica_patch_query* restrict queries, in
   } else
 #endif
     walk_leaves(query, grid, lobes, block_nodes, tile_nodes, &results, scratch);
+  add_areas(&results);
   global float* answer = answers + 4 * query->lobe.map.slot;
-  answer[0] = query->lobe.map.scale * wave_sum(results.density, scratch);
+  answer[0] = query->lobe.map.scale * end_lobes(&query->lobe, &results.density, scratch);
   answer[1] = fma(query->weight, wave_sum(results.view, scratch), view);
   answer[2] = fma(query->weight, wave_sum(results.light, scratch), light);
   answer[3] = fma(query->weight, wave_sum(results.projected, scratch), projected);

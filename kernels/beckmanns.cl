@@ -13,10 +13,10 @@
 #define LEAF_NODE_STRIDE MICA_MIXTURE_NODE_STRIDE
 #define LEAF_DATA short
 #define LEAF_AT(leaf_i, leaf_j) ((block.index * 16 + tile) * 16 + leaf)
-#define LEAF_RESULTS wave_float
+#define LEAF_RESULTS lobe_sum
 #define LEAF_SURVIVORS dense_lobes
-#define LEAF_TAKE(query, lobes, leaf, i, j, room_i, room_j, sum, scratch) \
-  sum_lobes(query, lobes, leaf, i, j, room_i, room_j, sum)
+#define LEAF_TAKE(query, lobes, leaf, i, j, room_i, room_j, results, scratch) \
+  sum_lobes(query, lobes, leaf, i, j, room_i, room_j, results)
 #include "walk_leaves.h"
 
 // Density of every query, in the order of their slots. Global size: queries (vectors), or 16 a query (items).
@@ -26,8 +26,8 @@ kernel void beckmanns(global const mica_lobe_query* restrict queries, int query_
   WAVE_DECLARE_SCRATCH(scratch);
   if (WAVE_ITEM_INDEX >= query_count) return;
   global const mica_lobe_query* query = queries + WAVE_ITEM_INDEX;
-  wave_float sum = 0.0f;
-  walk_leaves(query, grid, lobes, block_nodes, tile_nodes, &sum, scratch);
-  const float total = wave_sum(sum, scratch);
-  density[query->map.slot] = MICA_COUNT_ELEMENTS ? total : query->map.scale * total;
+  lobe_sum results;
+  begin_lobes(&results);
+  walk_leaves(query, grid, lobes, block_nodes, tile_nodes, &results, scratch);
+  density[query->map.slot] = (MICA_COUNT_ELEMENTS ? 1.0f : query->map.scale) * end_lobes(query, &results, scratch);
 }

@@ -6,16 +6,13 @@
 // with m and F the footprint's mean and covariance: one exponent an element. s0 and J are not stored: four texels say them.
 // One wave a query; leaves of 4x4 texels survive the walk and are summed sixteen elements at a time, without a branch.
 
-#include "gaussian.h"
 #include "map_cull.h"
 #include "oriented_bound.h"
+#include "quad_corners.h"
+#include "slice.h"
 #include "types.h"
 #include "wave.h"
 
-// 0: constant texels, whose elements have no Jacobian; 1: bilinear quads between the centres of texels.
-#ifndef MICA_INTERPOLATION
-#define MICA_INTERPOLATION 1
-#endif
 // Elements a texel and axis.
 #ifndef MICA_ELEMENTS
 #define MICA_ELEMENTS 1
@@ -43,73 +40,105 @@ static inline uint surviving_elements(global const mica_mixture_query* query, gl
                      scratch);
 }
 
-// Sixteen elements, one of each quad of a leaf. `x`, `y`: centres less the footprint's mean, texels. `e`: the half vector
-// less s0; `jx`, `jy`: columns of J a texel; all in fixed-point units. Without the query's scale.
-static inline wave_float slice_elements(global const mica_mixture_query* query, wave_float x, wave_float y,
-                                        wave_float e_s, wave_float e_t, wave_float jx_s, wave_float jx_t,
-                                        wave_float jy_s, wave_float jy_t) {
-  const float to_roughness = query->map.inverse_roughness / MICA_NORMAL_ONE;
-  const wave_float p1 = fma(x, query->axis_1x, y * query->axis_1y);
-  const wave_float p2 = fma(x, query->axis_2x, y * query->axis_2y);
-  // J a_i / tau_i
-  const wave_float v1_s = fma(jx_s, query->axis_1x, jy_s * query->axis_1y);
-  const wave_float v1_t = fma(jx_t, query->axis_1x, jy_t * query->axis_1y);
-  const wave_float v2_s = fma(jx_s, query->axis_2x, jy_s * query->axis_2y);
-  const wave_float v2_t = fma(jx_t, query->axis_2x, jy_t * query->axis_2y);
-  // The residual s - s0 - J A (m - c) in roughnesses; m - c = -(x, y).
-  const wave_float k1 = query->kernel_variance * p1, k2 = query->kernel_variance * p2;
-  const wave_float r_s = to_roughness * fma(k1, v1_s, fma(k2, v2_s, e_s));
-  const wave_float r_t = to_roughness * fma(k1, v1_t, fma(k2, v2_t, e_t));
-  // I + M M^T is the covariance in roughnesses; its determinant and its inverse's form, without cancellation.
-  const float blur_1 = query->blur_1 / MICA_NORMAL_ONE, blur_2 = query->blur_2 / MICA_NORMAL_ONE;
-  const wave_float m1_s = blur_1 * v1_s, m1_t = blur_1 * v1_t, m2_s = blur_2 * v2_s, m2_t = blur_2 * v2_t;
-  const wave_float det_m = fma(m1_s, m2_t, -(m1_t * m2_s));
-  const wave_float det = fma(det_m, det_m, fma(m1_s, m1_s, fma(m1_t, m1_t, fma(m2_s, m2_s, fma(m2_t, m2_t, 1.0f)))));
-  const wave_float cross_1 = fma(r_s, m1_t, -(r_t * m1_s)), cross_2 = fma(r_s, m2_t, -(r_t * m2_s));
-  const wave_float form = fma(r_s, r_s, fma(r_t, r_t, fma(cross_1, cross_1, cross_2 * cross_2)));
-  const wave_float inverse_root = wave_rsqrt(det);
-  const wave_float q = fma(form * inverse_root, inverse_root, fma(p1, p1, p2 * p2));
-  return inverse_root * gaussian_exp2(max((-EXP2_SCALE * EXP2_SCALE) * q, -126.0f));
+// Sixteen elements, one of each quad of a leaf. Lengths are times EXP2_SCALE, so that exponents are of 2.
+typedef struct {
+  wave_float p1, p2;                    // centres less the footprint's mean, whitened
+  wave_float e_s, e_t;                  // the half vector less s0, in roughnesses
+  wave_float jx_s, jx_t, jy_s, jy_t;    // twice the columns of J a texel, in fixed point
+} element_wave;
+
+// What a query's slices have in common, and their sum.
+typedef struct {
+  float a1x, a1y, a2x, a2y;                  // a_i / tau_i
+  float pull_1x, pull_1y, pull_2x, pull_2y;  // k a_i / tau_i over the roughness, for twice a Jacobian in fixed point
+  float blur_1, blur_2;                      // the query's, for what has been pulled
+  float to_roughness;
+  wave_float lane_1, lane_2;                 // p1 and p2 of a lane's place in its leaf
+  int leaves;
+  element_wave loaded;
+  slice_wave sliced;
+  wave_float sum;
+} leaf_results;
+
+static inline void begin_slices(global const mica_mixture_query* query, private leaf_results* results) {
+  results->a1x = EXP2_SCALE * query->axis_1x, results->a1y = EXP2_SCALE * query->axis_1y;
+  results->a2x = EXP2_SCALE * query->axis_2x, results->a2y = EXP2_SCALE * query->axis_2y;
+  const wave_float column = wave_to_float(WAVE_LANE & 3), row = wave_to_float(WAVE_LANE >> 2), zero = 0.0f;
+  results->lane_1 = fma(column, results->a1x, row * results->a1y), results->lane_2 = fma(column, results->a2x, row * results->a2y);
+  const float pull = query->kernel_variance * query->map.inverse_roughness, to_pull = 0.5f / MICA_NORMAL_ONE * pull;
+  results->pull_1x = to_pull * query->axis_1x, results->pull_1y = to_pull * query->axis_1y;
+  results->pull_2x = to_pull * query->axis_2x, results->pull_2y = to_pull * query->axis_2y;
+  results->blur_1 = query->blur_1 / pull, results->blur_2 = query->blur_2 / pull;
+  results->to_roughness = EXP2_SCALE / MICA_NORMAL_ONE * query->map.inverse_roughness;
+  results->leaves = 0;
+  results->loaded.p1 = NOWHERE, results->loaded.p2 = results->loaded.e_s = results->loaded.e_t = zero;
+  results->loaded.jx_s = results->loaded.jx_t = results->loaded.jy_s = results->loaded.jy_t = zero;
+  results->sliced.q_position = NOWHERE, results->sliced.form = zero, results->sliced.det = 1.0f;
+  results->sum = zero;
 }
 
-typedef wave_float leaf_results;
+static inline void slice_elements(private const leaf_results* by, private const element_wave* e, private slice_wave* slice) {
+  // J a_i / tau_i, pulled: times p_i what the residual s - s0 - J A (m - c) moves by, whose m - c is -p.
+  const wave_float v1_s = fma(e->jx_s, by->pull_1x, e->jy_s * by->pull_1y), v1_t = fma(e->jx_t, by->pull_1x, e->jy_t * by->pull_1y);
+  const wave_float v2_s = fma(e->jx_s, by->pull_2x, e->jy_s * by->pull_2y), v2_t = fma(e->jx_t, by->pull_2x, e->jy_t * by->pull_2y);
+  const wave_float r_s = fma(e->p1, v1_s, fma(e->p2, v2_s, e->e_s)), r_t = fma(e->p1, v1_t, fma(e->p2, v2_t, e->e_t));
+  // I + M M^T is the covariance in roughnesses; its determinant and its inverse's form, without cancellation.
+  const wave_float m1_s = by->blur_1 * v1_s, m1_t = by->blur_1 * v1_t, m2_s = by->blur_2 * v2_s, m2_t = by->blur_2 * v2_t;
+  const wave_float det_m = fma(m1_s, m2_t, -(m1_t * m2_s));
+  slice->det = fma(det_m, det_m, fma(m1_s, m1_s, fma(m1_t, m1_t, fma(m2_s, m2_s, fma(m2_t, m2_t, 1.0f)))));
+  const wave_float cross_1 = fma(r_s, m1_t, -(r_t * m1_s)), cross_2 = fma(r_s, m2_t, -(r_t * m2_s));
+  slice->form = fma(r_s, r_s, fma(r_t, r_t, fma(cross_1, cross_1, cross_2 * cross_2)));
+  slice->q_position = fma(e->p1, e->p1, e->p2 * e->p2);
+}
+
+// The three steps, each of another wave of elements.
+static inline void advance(private leaf_results* results, private const element_wave* next) {
+  results->sum += slice_density(&results->sliced);
+  slice_elements(results, &results->loaded, &results->sliced);
+  results->loaded = *next;
+}
 
 // The elements of a leaf whose lower left texel is stored at `at` and lies (i, j) texels from the mean.
 static inline void take_elements(global const mica_mixture_query* query, global const int* normals, int at, int i, int j,
-                                 int room_i, int room_j, private wave_float* sum) {
-  const wave_int column = WAVE_LANE & 3, row = WAVE_LANE >> 2;
-  const wave_int inside_map = wave_mask(column < room_i) & wave_mask(row < room_j);
-  const wave_float x = wave_to_float(i + column) - query->map.mean_x, y = wave_to_float(j + row) - query->map.mean_y;
-  global const int* s = normals + at;
-  global const int* t = s + MICA_BLOCK_PLANE;
-  wave_int s00, s10, t00, t10;
-  wave_load_4x4_pair(s, MICA_BLOCK_ROW, &s00, &s10);
-  wave_load_4x4_pair(t, MICA_BLOCK_ROW, &t00, &t10);
-  // Exact differences of fixed-point numbers: rounding begins here.
-  const wave_float e_s = wave_to_float(query->map.half_s - s00), e_t = wave_to_float(query->map.half_t - t00);
-#if MICA_INTERPOLATION == 0
-  const wave_float x_s = 0.0f, y_s = 0.0f, xy_s = 0.0f, x_t = 0.0f, y_t = 0.0f, xy_t = 0.0f;
+                                 int room_i, int room_j, private leaf_results* results) {
+  quad_corners c;
+  load_corners(normals, at, &c);
+  // The bilinear patch s00 + x f + y g + (xy - x - y) f g. Differences of fixed-point numbers are exact: rounding begins here.
+  const wave_float x_s = wave_to_float(c.s10 - c.s00), y_s = wave_to_float(c.s01 - c.s00), xy_s = wave_to_float(c.s11 - c.s00);
+  const wave_float x_t = wave_to_float(c.t10 - c.t00), y_t = wave_to_float(c.t01 - c.t00), xy_t = wave_to_float(c.t11 - c.t00);
+  const float to_roughness = results->to_roughness;
+  const wave_float e_s = to_roughness * wave_to_float(query->map.half_s - c.s00);
+  const wave_float e_t = to_roughness * wave_to_float(query->map.half_t - c.t00);
+  const float x = i - query->map.mean_x, y = j - query->map.mean_y;
+  wave_float lane_1 = results->lane_1;
+  if (room_i < MICA_LEAF || room_j < MICA_LEAF) {
+    const wave_float nowhere = NOWHERE;
+    lane_1 = wave_select(nowhere, lane_1, wave_mask((WAVE_LANE & 3) < room_i) & wave_mask((WAVE_LANE >> 2) < room_j));
+  }
+  ++results->leaves;
+  element_wave next;
+#if MICA_ELEMENTS == 1
+  const wave_float turn_s = x_s - y_s, turn_t = x_t - y_t;
+  next.p1 = lane_1 + fma(x + 0.5f, results->a1x, (y + 0.5f) * results->a1y);
+  next.p2 = results->lane_2 + fma(x + 0.5f, results->a2x, (y + 0.5f) * results->a2y);
+  next.e_s = fma(-0.25f * to_roughness, x_s + y_s + xy_s, e_s), next.e_t = fma(-0.25f * to_roughness, x_t + y_t + xy_t, e_t);
+  next.jx_s = xy_s + turn_s, next.jx_t = xy_t + turn_t, next.jy_s = xy_s - turn_s, next.jy_t = xy_t - turn_t;
+  advance(results, &next);
 #else
-  wave_int s01, s11, t01, t11;
-  wave_load_4x4_pair(s + MICA_BLOCK_ROW, MICA_BLOCK_ROW, &s01, &s11);
-  wave_load_4x4_pair(t + MICA_BLOCK_ROW, MICA_BLOCK_ROW, &t01, &t11);
-  // The bilinear patch s00 + x_s f + y_s g + xy_s f g.
-  const wave_float x_s = wave_to_float(s10 - s00), y_s = wave_to_float(s01 - s00);
-  const wave_float x_t = wave_to_float(t10 - t00), y_t = wave_to_float(t01 - t00);
-  const wave_float xy_s = wave_to_float(s11 - s00) - x_s - y_s, xy_t = wave_to_float(t11 - t00) - x_t - y_t;
-#endif
-  wave_float leaf_sum = 0.0f;
+  const wave_float bend_s = xy_s - x_s - y_s, bend_t = xy_t - x_t - y_t;
   for (int b = 0; b < MICA_ELEMENTS; ++b) {
     for (int a = 0; a < MICA_ELEMENTS; ++a) {
       const float f = (a + 0.5f) * ELEMENT_SIZE, g = (b + 0.5f) * ELEMENT_SIZE;
-      const wave_float jx_s = fma(xy_s, g, x_s), jx_t = fma(xy_t, g, x_t);
-      const wave_float jy_s = fma(xy_s, f, y_s), jy_t = fma(xy_t, f, y_t);
-      leaf_sum += slice_elements(query, x + f, y + g, e_s - fma(jx_s, f, y_s * g), e_t - fma(jx_t, f, y_t * g), jx_s,
-                                 jx_t, jy_s, jy_t);
+      next.p1 = lane_1 + fma(x + f, results->a1x, (y + g) * results->a1y);
+      next.p2 = results->lane_2 + fma(x + f, results->a2x, (y + g) * results->a2y);
+      const wave_float jx_s = fma(bend_s, g, x_s), jx_t = fma(bend_t, g, x_t);
+      next.e_s = fma(-to_roughness, fma(jx_s, f, y_s * g), e_s), next.e_t = fma(-to_roughness, fma(jx_t, f, y_t * g), e_t);
+      next.jx_s = 2.0f * jx_s, next.jy_s = 2.0f * fma(bend_s, f, y_s);
+      next.jx_t = 2.0f * jx_t, next.jy_t = 2.0f * fma(bend_t, f, y_t);
+      advance(results, &next);
     }
   }
-  const wave_float nothing = 0.0f, count = MICA_ELEMENTS * MICA_ELEMENTS;
-  *sum += wave_select(nothing, MICA_COUNT_ELEMENTS ? count : leaf_sum, inside_map);
+#endif
 }
 
 #define LEAF_QUERY mica_mixture_query
@@ -127,8 +156,15 @@ kernel void gaussians(global const mica_mixture_query* restrict queries, int que
   WAVE_DECLARE_SCRATCH(scratch);
   if (WAVE_ITEM_INDEX >= query_count) return;
   global const mica_mixture_query* query = queries + WAVE_ITEM_INDEX;
-  wave_float sum = 0.0f;
-  walk_leaves(query, grid, normals, block_nodes, tile_nodes, &sum, scratch);
-  const float total = wave_sum(sum, scratch);
-  density[query->map.slot] = MICA_COUNT_ELEMENTS ? total : query->map.scale * total;
+  leaf_results results;
+  begin_slices(query, &results);
+  walk_leaves(query, grid, normals, block_nodes, tile_nodes, &results, scratch);
+  const element_wave none = results.loaded;
+  for (int step = 0; step < 2; ++step) advance(&results, &none);
+  const float total = results.leaves > 0 ? wave_sum(results.sum, scratch) : 0.0f;
+#if MICA_COUNT_ELEMENTS
+  density[query->map.slot] = results.leaves * (float)(WAVE_LANES * MICA_ELEMENTS * MICA_ELEMENTS);
+#else
+  density[query->map.slot] = query->map.scale * total;
+#endif
 }

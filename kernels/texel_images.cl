@@ -6,12 +6,8 @@
 //     w N(m - c; P + F) N(h - s - J P A (m - c); sigma_r^2 I + J Q J^T),   A = (P + F)^-1,  Q = P - P A P.
 // One wave a band of an image.
 
+#include "quad_corners.h"
 #include "splat.h"
-
-// 0: a constant texel, 1: two triangles a quad.
-#ifndef MICA_INTERPOLATION
-#define MICA_INTERPOLATION 1
-#endif
 
 // Normals may change by this many roughnesses over a piece; triangles are cut into MOST_CUTS^2 pieces at most: where normals
 // change faster they are spread too thin for their pieces' shape to matter.
@@ -84,17 +80,8 @@ static inline wave_float largest_change(wave_float a, wave_float b) { return max
 // The sixteen quads of a leaf, whose lower left texel is stored at `at` and lies (i, j) texels from the mean.
 static inline void take_texels(global const mica_pyramid_query* query, global const int* normals, int at, int i, int j, int room_i,
                                int room_j, private const splat_target* target, WAVE_SHARED int* scratch) {
-  global const int* s = normals + at;
-  global const int* t = s + MICA_BLOCK_PLANE;
-  wave_int s00, s10, s01, s11, t00, t10, t01, t11;
-  wave_load_4x4_pair(s, MICA_BLOCK_ROW, &s00, &s10);
-  wave_load_4x4_pair(t, MICA_BLOCK_ROW, &t00, &t10);
-#if MICA_INTERPOLATION == 0
-  s10 = s01 = s11 = s00, t10 = t01 = t11 = t00;
-#else
-  wave_load_4x4_pair(s + MICA_BLOCK_ROW, MICA_BLOCK_ROW, &s01, &s11);
-  wave_load_4x4_pair(t + MICA_BLOCK_ROW, MICA_BLOCK_ROW, &t01, &t11);
-#endif
+  quad_corners c;
+  load_corners(normals, at, &c);
   const float scale = query->map.inverse_roughness / MICA_NORMAL_ONE;
   const wave_int column = WAVE_LANE & 3, row = WAVE_LANE >> 2;
   const wave_int valid = wave_mask(column < room_i) & wave_mask(row < room_j);
@@ -102,12 +89,12 @@ static inline void take_texels(global const mica_pyramid_query* query, global co
   lower.x = wave_to_float(i + column) - query->map.mean_x, lower.y = wave_to_float(j + row) - query->map.mean_y;
   upper.x = lower.x + 1.0f, upper.y = lower.y + 1.0f;
   lower.turn = 1.0f, upper.turn = -1.0f;
-  lower.s = scale * wave_to_float(s00), lower.t = scale * wave_to_float(t00);
-  upper.s = scale * wave_to_float(s11), upper.t = scale * wave_to_float(t11);
-  lower.s1 = scale * wave_to_float(s10 - s00), lower.t1 = scale * wave_to_float(t10 - t00);
-  lower.s2 = scale * wave_to_float(s01 - s00), lower.t2 = scale * wave_to_float(t01 - t00);
-  upper.s1 = scale * wave_to_float(s01 - s11), upper.t1 = scale * wave_to_float(t01 - t11);
-  upper.s2 = scale * wave_to_float(s10 - s11), upper.t2 = scale * wave_to_float(t10 - t11);
+  lower.s = scale * wave_to_float(c.s00), lower.t = scale * wave_to_float(c.t00);
+  upper.s = scale * wave_to_float(c.s11), upper.t = scale * wave_to_float(c.t11);
+  lower.s1 = scale * wave_to_float(c.s10 - c.s00), lower.t1 = scale * wave_to_float(c.t10 - c.t00);
+  lower.s2 = scale * wave_to_float(c.s01 - c.s00), lower.t2 = scale * wave_to_float(c.t01 - c.t00);
+  upper.s1 = scale * wave_to_float(c.s01 - c.s11), upper.t1 = scale * wave_to_float(c.t01 - c.t11);
+  upper.s2 = scale * wave_to_float(c.s10 - c.s11), upper.t2 = scale * wave_to_float(c.t10 - c.t11);
   const wave_float change = max(max(largest_change(lower.s1, lower.s2), largest_change(lower.t1, lower.t2)),
                                 max(largest_change(upper.s1, upper.s2), largest_change(upper.t1, upper.t2)));
   const int cuts = 1 + min((int)(wave_max(change, scratch) * (1.0f / PIECE_ROUGHNESSES)), MOST_CUTS - 1);

@@ -2,6 +2,8 @@
 #ifndef MICA_TEXEL_QUADS_H
 #define MICA_TEXEL_QUADS_H
 
+#include "quad_corners.h"
+
 // Distance of a fixed-point value from the interval that four others span.
 static inline wave_float distance_from(int value, wave_int a, wave_int b, wave_int c, wave_int d) {
   const wave_int low = min(min(a, b), min(c, d)), high = max(max(a, b), max(c, d));
@@ -14,21 +16,12 @@ static inline wave_float distance_from(int value, wave_int a, wave_int b, wave_i
 static inline void take_leaf(global const mica_map_query* query, global const int* normals, int at, int i, int j,
                              int room_i, int room_j, private wave_list* list, private integrator* out,
                              WAVE_SHARED int* scratch) {
-  global const int* s = normals + at;
-  global const int* t = s + MICA_BLOCK_PLANE;
-  wave_int s00, s10, s01, s11, t00, t10, t01, t11;
-  wave_load_4x4_pair(s, MICA_BLOCK_ROW, &s00, &s10);
-  wave_load_4x4_pair(t, MICA_BLOCK_ROW, &t00, &t10);
-#if MICA_INTERPOLATION == 0
-  s10 = s01 = s11 = s00, t10 = t01 = t11 = t00;
-#else
-  wave_load_4x4_pair(s + MICA_BLOCK_ROW, MICA_BLOCK_ROW, &s01, &s11);
-  wave_load_4x4_pair(t + MICA_BLOCK_ROW, MICA_BLOCK_ROW, &t01, &t11);
-#endif
+  quad_corners c;
+  load_corners(normals, at, &c);
   const float scale = query->inverse_roughness / MICA_NORMAL_ONE;
   const int h_s = query->half_s, h_t = query->half_t;
-  const wave_float d_s = scale * distance_from(h_s, s00, s10, s01, s11);
-  const wave_float d_t = scale * distance_from(h_t, t00, t10, t01, t11);
+  const wave_float d_s = scale * distance_from(h_s, c.s00, c.s10, c.s01, c.s11);
+  const wave_float d_t = scale * distance_from(h_t, c.t00, c.t10, c.t01, c.t11);
   const wave_int column = WAVE_LANE & 3, row = WAVE_LANE >> 2;
   quads q;
   q.x = wave_to_float(i + column) - query->mean_x, q.y = wave_to_float(j + row) - query->mean_y;
@@ -37,10 +30,10 @@ static inline void take_leaf(global const mica_map_query* query, global const in
   const uint bits = wave_ballot(wave_mask(bound <= query->cutoff) & inside_map, scratch);
   if (bits == 0) return;
   // Exact differences of fixed-point numbers: rounding begins here.
-  q.s00 = scale * wave_to_float(s00 - h_s), q.t00 = scale * wave_to_float(t00 - h_t);
-  q.s10 = scale * wave_to_float(s10 - h_s), q.t10 = scale * wave_to_float(t10 - h_t);
-  q.s01 = scale * wave_to_float(s01 - h_s), q.t01 = scale * wave_to_float(t01 - h_t);
-  q.s11 = scale * wave_to_float(s11 - h_s), q.t11 = scale * wave_to_float(t11 - h_t);
+  q.s00 = scale * wave_to_float(c.s00 - h_s), q.t00 = scale * wave_to_float(c.t00 - h_t);
+  q.s10 = scale * wave_to_float(c.s10 - h_s), q.t10 = scale * wave_to_float(c.t10 - h_t);
+  q.s01 = scale * wave_to_float(c.s01 - h_s), q.t01 = scale * wave_to_float(c.t01 - h_t);
+  q.s11 = scale * wave_to_float(c.s11 - h_s), q.t11 = scale * wave_to_float(c.t11 - h_t);
   take_quads(query, &q, bits, list, out, scratch);
 }
 

@@ -9,9 +9,9 @@
 #include "gaussian.h"
 #include "wave.h"
 
-// What is added to m; from -m (all hidden) to 0 (m / t large). `t` is positive.
-static inline wave_float hidden_area(wave_float m, wave_float t) {
-  const wave_float z = m / t;
+// What is added to m; from -m (all hidden) to 0 (m / t large). @param variance t^2, a normal number.
+static inline wave_float hidden_area(wave_float m, wave_float variance) {
+  const wave_float inverse_t = wave_rsqrt(variance), z = m * inverse_t, t = variance * inverse_t;
   const wave_float density =
       0.398942280f * gaussian_exp2(max((-EXP2_SCALE * EXP2_SCALE) * z * z, -126.0f));
   const wave_float tail = 0.5f - gaussian_cdf_centred(CDF_SCALE * z);

@@ -83,10 +83,6 @@ static inline float wave_max(wave_float x, local int* scratch) {
 // Lane (x, y) = (lane & 3, lane >> 2) reads pointer[y * row + x], and its right neighbour.
 #define wave_load_4x4(pointer, row) ((pointer)[(WAVE_LANE >> 2) * (row) + (WAVE_LANE & 3)])
 #define wave_load_short_4x4(pointer, row) convert_int((pointer)[(WAVE_LANE >> 2) * (row) + (WAVE_LANE & 3)])
-static inline void wave_load_4x4_pair(global const int* pointer, int row, private wave_int* left,
-                                      private wave_int* right) {
-  *left = wave_load_4x4(pointer, row), *right = wave_load_4x4(pointer + 1, row);
-}
 
 // Writes the lanes in `bits`, packed, to list[0...].
 static inline void wave_pack(local float* list, uint bits, wave_float value) {
@@ -104,7 +100,7 @@ typedef int16 wave_int;
 typedef uint16 wave_uint;
 // The same at any address: some compilers split vload16 and vstore16 into quarters.
 typedef float16 wave_float_anywhere __attribute__((aligned(4)));
-typedef int8 wave_half_int_anywhere __attribute__((aligned(4)));
+typedef int4 wave_quarter_int_anywhere __attribute__((aligned(4)));
 typedef int16 wave_int_anywhere __attribute__((aligned(4)));
 typedef short16 wave_short_anywhere __attribute__((aligned(2)));
 #define WAVE_SHARED private
@@ -199,23 +195,19 @@ static inline float wave_max(wave_float x, private int* scratch) {
 
 // Lane (x, y) = (lane & 3, lane >> 2) reads pointer[y * row + x].
 static inline wave_int wave_load_4x4(global const int* pointer, int row) {
-  return (int16)(vload4(0, pointer), vload4(0, pointer + row), vload4(0, pointer + 2 * row),
-                 vload4(0, pointer + 3 * row));
+#define ROW(y) (*(global const wave_quarter_int_anywhere*)(pointer + (y)*row))
+  wave_int rows = (int16)(ROW(0), ROW(1), ROW(2), ROW(3));
+#undef ROW
+#if MICA_AVX512
+  // As it stands: the compiler would merge these loads with those of neighbours, and shuffle twice as often.
+  __asm__("" : "+v"(rows));
+#endif
+  return rows;
 }
 
 static inline wave_int wave_load_short_4x4(global const short* pointer, int row) {
   return convert_int16((short16)(vload4(0, pointer), vload4(0, pointer + row), vload4(0, pointer + 2 * row),
                                  vload4(0, pointer + 3 * row)));
-}
-
-// The same and its right neighbour; reads eight of each row, so that loads and shuffles are whole registers.
-static inline void wave_load_4x4_pair(global const int* pointer, int row, private wave_int* left,
-                                      private wave_int* right) {
-#define ROW(y) (*(global const wave_half_int_anywhere*)(pointer + (y)*row))
-  const int16 low = (int16)(ROW(0), ROW(1)), high = (int16)(ROW(2), ROW(3));
-#undef ROW
-  *left = shuffle2(low, high, (uint16)(0, 1, 2, 3, 8, 9, 10, 11, 16, 17, 18, 19, 24, 25, 26, 27));
-  *right = shuffle2(low, high, (uint16)(1, 2, 3, 4, 9, 10, 11, 12, 17, 18, 19, 20, 25, 26, 27, 28));
 }
 
 // Writes the lanes in `bits`, packed, to list[0...]; what follows them, up to sixteen in all, is undefined
@@ -234,6 +226,22 @@ static inline void wave_pack(private float* list, uint bits, wave_float value) {
 #define wave_list_sync()
 
 #endif
+
+// wave_load_4x4 and its neighbours to the right and above.
+static inline void wave_load_quads(global const int* pointer, int row, private wave_int* v00, private wave_int* v10,
+                                   private wave_int* v01, private wave_int* v11) {
+  *v00 = wave_load_4x4(pointer, row), *v10 = wave_load_4x4(pointer + 1, row);
+#if MICA_WAVE_ITEMS
+  *v01 = wave_load_4x4(pointer + row, row), *v11 = wave_load_4x4(pointer + row + 1, row);
+#else
+#define ROW(x) (*(global const wave_quarter_int_anywhere*)(pointer + 4 * row + (x)))
+  const int4 row_0 = ROW(0), row_1 = ROW(1);
+#undef ROW
+  const uint16 next_row = (uint16)(4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19);
+  *v01 = shuffle2(*v00, (int16)(row_0, row_0, row_0, row_0), next_row);
+  *v11 = shuffle2(*v10, (int16)(row_1, row_1, row_1, row_1), next_row);
+#endif
+}
 
 // A list of records of several floats, taken off a wave at a time. Field k of record n is records[k *
 // WAVE_LIST + n].

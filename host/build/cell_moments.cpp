@@ -100,12 +100,13 @@ void BlockMoments::add_triangle(const Eigen::Vector4d& a, const Eigen::Vector4d&
   const double area = 0.5 * std::abs(ab.x() * ac.y() - ab.y() * ac.x());
   const Eigen::Matrix4d products =
       ab * ab.transpose() + ac * ac.transpose() - 0.5 * (ab * ac.transpose() + ac * ab.transpose());
-  const Eigen::Matrix4d covariance = products / (18.0 * n * n);
+  const double weight = area / (n * n);
+  const Eigen::Matrix4d weighted_covariance = weight / (18.0 * n * n) * products;
   for (int row = 0; row < n; ++row) {
     for (int column = 0; column + row < n; ++column) {
       const auto add = [&](double third) {  // of a piece's edges from the corner to the piece's mean
         const Eigen::Vector4d mean = a + (column + third) / n * ab + (row + third) / n * ac;
-        at(cells_.cell_of(mean[2], mean[3])).add(area / (n * n), mean, covariance);
+        at(cells_.cell_of(mean[2], mean[3])).add_weighted(weight, mean, weighted_covariance);
       };
       add(1.0 / 3);
       if (column + row + 1 < n) add(2.0 / 3);
@@ -123,10 +124,15 @@ Moments& BlockMoments::at(int cell) {
 }
 
 std::vector<CellMoments> BlockMoments::take() {
-  for (const CellMoments& sum : sums_) place_of_cell_[sum.cell] = -1;
-  std::sort(sums_.begin(), sums_.end(),
-            [](const CellMoments& a, const CellMoments& b) { return a.cell < b.cell; });
-  std::vector<CellMoments> taken(sums_);
+  order_.clear();
+  for (std::size_t n = 0; n < sums_.size(); ++n) order_.emplace_back(sums_[n].cell, static_cast<int>(n));
+  std::sort(order_.begin(), order_.end());
+  std::vector<CellMoments> taken;
+  taken.reserve(order_.size());
+  for (const auto& [cell, place] : order_) {
+    taken.push_back(sums_[place]);
+    place_of_cell_[cell] = -1;
+  }
   sums_.clear();
   return taken;
 }

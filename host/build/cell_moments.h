@@ -1,5 +1,6 @@
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "host/build/moments.h"
@@ -48,8 +49,9 @@ class BlockMoments {
 
   const Surface& surface_;
   const NormalCells& cells_;
-  std::vector<int> place_of_cell_;  // in sums_, or -1
-  std::vector<CellMoments> sums_;   // in the order in which cells were first met
+  std::vector<int> place_of_cell_;          // in sums_, or -1
+  std::vector<CellMoments> sums_;           // in the order in which cells were first met
+  std::vector<std::pair<int, int>> order_;  // of cells, with their places in sums_
 };
 
 }  // namespace mica

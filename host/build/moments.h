@@ -20,9 +20,16 @@ struct Moments {
   }
   /// A part with this mean and covariance.
   void add(double part_weight, const Eigen::Vector4d& mean, const Eigen::Matrix4d& covariance) {
+    add_weighted(part_weight, mean, part_weight * covariance);
+  }
+  /// The same, of a covariance times the weight.
+  void add_weighted(double part_weight, const Eigen::Vector4d& mean,
+                    const Eigen::Matrix4d& weighted_covariance) {
+    const Eigen::Vector4d weighted_mean = part_weight * mean;
     weight += part_weight;
-    first += part_weight * mean;
-    second += part_weight * (covariance + mean * mean.transpose());
+    first += weighted_mean;
+    for (int column = 0; column < 4; ++column)
+      second.col(column) += weighted_covariance.col(column) + mean[column] * weighted_mean;
   }
 
   Eigen::Vector4d mean() const { return first / weight; }

@@ -227,11 +227,12 @@ void AutoEvaluator::measure(Evaluator* built, const Samples& samples, std::size_
       bootstrap_bound(squares, references) + kTrianglesError;  // and what triangles are off by
 }
 
-/// Of the first samples.
+/// Of the first samples; of triangles, which only have to be beaten, few.
 double AutoEvaluator::cost(Candidate* candidate, const Samples& samples) {
-  const std::vector<Query> some(samples.queries.begin(),
-                                samples.queries.begin() + static_cast<std::ptrdiff_t>(std::min(
-                                                              kLooks.front(), samples.queries.size())));
+  const std::size_t count = candidate->method == Method::triangles ? 16 : kLooks.front();
+  const auto first = samples.queries.begin();
+  const std::vector<Query> some(first,
+                                first + static_cast<std::ptrdiff_t>(std::min(count, samples.queries.size())));
   const CostModel model = candidate->method == Method::triangles   ? triangles_cost()
                           : candidate->method == Method::gaussians ? gaussians_cost(candidate->elements)
                                                                    : pyramid_cost();
