@@ -57,8 +57,7 @@ PyramidEvaluator::PyramidEvaluator(Device& device, const Surface& surface, const
     : device_(device),
       surface_(surface),
       settings_(settings),
-      wave_form_(settings.wave_form.value_or(device.wave_form())),
-      cutoff_(cutoff_for(settings.precision.cutoff_error)) {}
+      wave_form_(settings.wave_form.value_or(device.wave_form())) {}
 
 std::unique_ptr<PendingDensities> PyramidEvaluator::start(const std::vector<Query>& queries, bool counting) {
   std::map<PyramidChoice, Share> by_level;
@@ -86,8 +85,8 @@ std::unique_ptr<PendingDensities> PyramidEvaluator::start(const std::vector<Quer
   for (auto& [choice, share] : by_level) {
     take(share.places);
     PyramidLevelBatches& batches = level(choice);
-    all->add(counting ? batches.start_count(level_queries(some, choice, cutoff_, 1))
-                      : batches.start(level_queries(some, choice, cutoff_, gain(choice))),
+    std::vector<device_types::mica_pyramid_query> sent = level_queries(some, choice, culling(choice));
+    all->add(counting ? batches.start_count(std::move(sent)) : batches.start(std::move(sent)),
              std::move(share));
   }
   if (!small.empty()) {
@@ -99,25 +98,54 @@ std::unique_ptr<PendingDensities> PyramidEvaluator::start(const std::vector<Quer
 }
 
 std::vector<device_types::mica_pyramid_query> PyramidEvaluator::level_queries(
-    const std::vector<Query>& queries, const PyramidChoice& choice, double cutoff, double gain) {
+    const std::vector<Query>& queries, const PyramidChoice& choice, const Culling& culling) {
   const PyramidShape& shape = level(choice).shape();
   std::vector<device_types::mica_pyramid_query> result(queries.size());
   tbb::parallel_for(std::size_t{0}, queries.size(), [&](std::size_t n) {
-    result[n] = to_pyramid_query(queries[n], shape, surface_.interpolation(), cutoff, choice.uniform);
-    result[n].map.scale *= static_cast<float>(gain);
+    result[n] = to_pyramid_query(queries[n], shape, surface_.interpolation(), culling.cutoff, choice.uniform);
+    result[n].map.scale *= static_cast<float>(culling.gain);
   });
   return result;
 }
 
-/// What culling drops has one sign. On average it is put back: the factor that brings queries all over the
-/// map closest to what they are with hardly any culling.
-double PyramidEvaluator::gain(const PyramidChoice& choice) {
-  const auto found = gains_.find(choice);
-  if (found != gains_.end()) return found->second;
-  constexpr int samples = 512;
-  constexpr double small_cutoff_error = 1e-6;
+/// What culling drops has one sign. On average it is put back: the gain is the factor that brings queries all
+/// over the map closest to what they are with hardly any culling. Where a footprint sees few elements, as of
+/// flakes, the tails that are dropped are all there is, and the cutoff is made smaller until the rest is
+/// small.
+PyramidEvaluator::Culling PyramidEvaluator::culling(const PyramidChoice& choice) {
+  const auto found = cullings_.find(choice);
+  if (found != cullings_.end()) return found->second;
+  constexpr double small_cutoff_error = 1e-6, share_of_error = 0.1;
   const Stopwatch watch;
-  // The middle of the footprints and roughnesses that read this level; wider footprints are uniform ones.
+  const std::vector<Query> queries = culling_sample(choice);
+  PyramidLevelBatches& batches = level(choice);
+  const auto evaluate = [&](double cutoff) {
+    return batches.start(level_queries(queries, choice, {cutoff, 1}))->wait();
+  };
+  const std::vector<float> complete = evaluate(cutoff_for(small_cutoff_error));
+  Culling culling;
+  const double cutoff_error = settings_.precision.cutoff_error;
+  for (const double finer : {1.0, 0.25, 0.0625}) {
+    culling.cutoff = cutoff_for(finer * cutoff_error);
+    const std::vector<float> culled = evaluate(culling.cutoff);
+    double product = 0, square = 0, whole = 0;
+    for (std::size_t n = 0; n < queries.size(); ++n) {
+      product += static_cast<double>(culled[n]) * complete[n];
+      square += static_cast<double>(culled[n]) * culled[n];
+      whole += static_cast<double>(complete[n]) * complete[n];
+    }
+    if (square > 0) culling.gain = product / square;
+    const double left = whole - culling.gain * product;  // sum of squares that no gain puts back
+    if (left <= std::pow(share_of_error * cutoff_error, 2) * whole) break;
+  }
+  build_seconds_ += watch.seconds();
+  return cullings_[choice] = culling;
+}
+
+/// Queries all over the map, of the middle of the footprints and roughnesses that read this level; wider
+/// footprints are uniform ones.
+std::vector<Query> PyramidEvaluator::culling_sample(const PyramidChoice& choice) const {
+  constexpr int samples = 512;
   const double sigma = std::min(std::sqrt(2.0) * choice.block / settings_.precision.block_ratio,
                                 0.75 * std::max(surface_.width(), surface_.height()));
   const double roughness =
@@ -136,18 +164,7 @@ double PyramidEvaluator::gain(const PyramidChoice& choice) {
     query.half_vector =
         (normal + distance * Eigen::Vector2d(std::cos(angle), std::sin(angle))).cwiseMax(-1).cwiseMin(1);
   }
-  PyramidLevelBatches& batches = level(choice);
-  const auto evaluate = [&](double cutoff) {
-    return batches.start(level_queries(queries, choice, cutoff, 1))->wait();
-  };
-  const std::vector<float> culled = evaluate(cutoff_), complete = evaluate(cutoff_for(small_cutoff_error));
-  double product = 0, square = 0;
-  for (int n = 0; n < samples; ++n) {
-    product += static_cast<double>(culled[n]) * complete[n];
-    square += static_cast<double>(culled[n]) * culled[n];
-  }
-  build_seconds_ += watch.seconds();
-  return gains_[choice] = square > 0 ? product / square : 1;
+  return queries;
 }
 
 std::optional<PyramidChoice> PyramidEvaluator::choose(const Query& query) {

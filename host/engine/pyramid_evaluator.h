@@ -52,20 +52,25 @@ class PyramidEvaluator : public Evaluator {
  private:
   std::unique_ptr<PendingDensities> start(const std::vector<Query>& queries, bool counting);
   int finest_block(int cell_class);
+  /// What a level's queries leave out, and the factor that makes up for it.
+  struct Culling {
+    double cutoff = 0, gain = 1;
+  };
   std::vector<device_types::mica_pyramid_query> level_queries(const std::vector<Query>& queries,
-                                                              const PyramidChoice& choice, double cutoff,
-                                                              double gain);
-  double gain(const PyramidChoice& choice);
+                                                              const PyramidChoice& choice,
+                                                              const Culling& culling);
+  Culling culling(const PyramidChoice& choice);
+  std::vector<Query> culling_sample(const PyramidChoice& choice) const;
   Evaluator* texels(bool counting);
 
   Device& device_;
   const Surface& surface_;
   PyramidSettings settings_;
   WaveForm wave_form_;
-  double cutoff_, build_seconds_ = 0;
+  double build_seconds_ = 0;
   std::map<int, int> finest_block_;  // by cell class
   std::map<PyramidChoice, PyramidLevelBatches> levels_;
-  std::map<PyramidChoice, double> gains_;
+  std::map<PyramidChoice, Culling> cullings_;
   std::unique_ptr<Evaluator> texels_, counting_texels_;
 };
 

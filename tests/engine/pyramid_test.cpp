@@ -84,6 +84,18 @@ TEST(Pyramid, KeepsOnePercentOnNoise) {
 TEST(Pyramid, KeepsOnePercentOnFlakes) {
   for (const double roughness : {0.005, 0.02}) expect_one_percent(flakes(), roughness);
 }
+/// Half vectors that hardly a flake under their footprints faces: what is seen of these are tails.
+TEST(Pyramid, KeepsTheTailsOfFlakes) {
+  const Surface surface =
+      make_surface({"test", FlakesSurface{512, 12, 0.2, 5}, Interpolation::nearest}, nullptr);
+  std::vector<Query> queries = random_queries(surface, 32, 32, 0.005, 128);
+  for (std::size_t n = 0; n < queries.size(); ++n)
+    queries[n].half_vector = {0.0012 * static_cast<double>(n), 0.05 - 0.0008 * static_cast<double>(n)};
+  PyramidEvaluator pyramid(device(), surface);
+  const double error = error_of(&pyramid, reference::Oracle(surface, 1e-4), queries);
+  std::printf("%.2f%%\n", 100 * error);
+  EXPECT_LE(error, 0.005);
+}
 TEST(Pyramid, KeepsOnePercentOnAMapThatIsNoMultipleOfABlock) {
   expect_one_percent(oblong(), 0.02);
 }
