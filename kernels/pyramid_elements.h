@@ -19,8 +19,8 @@ typedef struct {
 
 static inline int node_word(global const short* node, int word) { return ((global const int*)node)[word]; }
 
-// Bits of the children of `node` that reach the cutoff. A joint covariance is at most twice its two diagonal blocks, so that
-// an element's exponent is at least that of its position plus that of its normal, each with twice its variance added.
+// Bits of the children of `node` that reach the cutoff. An element's exponent is at least that of its position plus
+// that of its normal, each with the variance that its bound tells added.
 static inline uint surviving_records(global const mica_pyramid_query* query, half_vector_box half_vectors, global const short* node,
                                      group_place place, float position_unit, WAVE_SHARED int* scratch) {
   global const mica_map_query* map = &query->map;
@@ -41,11 +41,15 @@ static inline uint surviving_records(global const mica_pyramid_query* query, hal
   const wave_float d_t = max(max(t_min - half_vectors.t_high, half_vectors.t_low - t_max), 0.0f);
 
   const float k = map->inverse_roughness;
-  const float variance_p = fma(query->inverse_minor_variance, as_float(node_word(node, MICA_PYRAMID_NODE_SPREAD_P)), 1.0f);
-  const float variance_n = fma(k * k, as_float(node_word(node, MICA_PYRAMID_NODE_SPREAD_N)), 1.0f);
-  const float weight_p = 1.0f / variance_p, weight_n = k * k / ((float)MICA_BOUND_ONE * MICA_BOUND_ONE * variance_n);
-  const wave_float q = fma(weight_p, fma(d1, d1, d2 * d2), weight_n * fma(d_s, d_s, d_t * d_t));
-  return wave_ballot(wave_mask(q <= map->cutoff) & wave_mask(s_min <= s_max), scratch);
+  const float unit_p = query->inverse_minor_variance * as_float(node_word(node, MICA_PYRAMID_NODE_UNIT_P));
+  const float unit_n = k * k * as_float(node_word(node, MICA_PYRAMID_NODE_UNIT_N));
+  const wave_float variance_p = fma(wave_to_float(wave_load_short(node + 128)), unit_p, 1.0f);
+  const wave_float variance_n = fma(wave_to_float(wave_load_short(node + 144)), unit_n, 1.0f);
+  // q_p / variance_p + q_n / variance_n <= cutoff, without the divisions.
+  const wave_float q_p = fma(d1, d1, d2 * d2);
+  const wave_float q_n = (k * k / ((float)MICA_BOUND_ONE * MICA_BOUND_ONE)) * fma(d_s, d_s, d_t * d_t);
+  const wave_float q = fma(q_p, variance_n, q_n * variance_p);
+  return wave_ballot(wave_mask(q <= map->cutoff * variance_p * variance_n) & wave_mask(s_min <= s_max), scratch);
 }
 
 // Sixteen elements as the footprint slices them: lobes of normals, in roughnesses.

@@ -29,11 +29,12 @@ enum {
   MICA_RECORD_NORMAL_UNIT,     // float: of covariances of normals
   MICA_RECORD_CROSS_UNIT,      // float: of covariances of position with normal, texels
 
-  // A node: sixteen shorts a bound, x, half width, y, half height (like positions), s_min, s_max, t_min, t_max; then words.
-  MICA_PYRAMID_NODE_STRIDE = 136,  // shorts
-  MICA_PYRAMID_NODE_CHILD = 64,    // words before it; int: index of the first child
-  MICA_PYRAMID_NODE_SPREAD_P,      // float: twice the largest variance of an element's position, texels^2
-  MICA_PYRAMID_NODE_SPREAD_N       // float: twice the largest variance of an element's normal
+  // A node: sixteen shorts a bound, x, half width, y, half height (like positions), s_min, s_max, t_min, t_max, and the
+  // largest variances of an element's position and of its normal, as if neither told of the other; then words.
+  MICA_PYRAMID_NODE_STRIDE = 168,  // shorts
+  MICA_PYRAMID_NODE_CHILD = 80,    // words before it; int: index of the first child
+  MICA_PYRAMID_NODE_UNIT_P,        // float: of the variances of positions, texels^2
+  MICA_PYRAMID_NODE_UNIT_N         // float: of the variances of normals
 };
 
 // Fields of a record, after its header.

@@ -1,5 +1,6 @@
 #include "host/build/element_tree.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -74,6 +75,31 @@ std::int16_t to_short(double value) {
 double largest_eigenvalue(const Eigen::Matrix2d& m) {
   return 0.5 * (m(0, 0) + m(1, 1)) + std::hypot(0.5 * (m(0, 0) - m(1, 1)), m(0, 1));
 }
+
+Eigen::Matrix2d inverse_root(const Eigen::Matrix2d& m) {
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>().computeDirect(m).operatorInverseSqrt();
+}
+
+/// Variances of position and of normal, so that an element's joint covariance is at most that of both as if
+/// they did not depend on each other: its two diagonal blocks times 1 + rho, rho the largest correlation of a
+/// position with a normal. Rounding is kept out by blocks that are a little larger.
+struct SeparateVariances {
+  double position, normal;
+
+  explicit SeparateVariances(const Eigen::Matrix4d& covariance) {
+    constexpr double slack = 1e-3, least = 1e-12;
+    const auto widened = [](const Eigen::Matrix2d& block) -> Eigen::Matrix2d {
+      return block + (slack * largest_eigenvalue(block) + least) * Eigen::Matrix2d::Identity();
+    };
+    const Eigen::Matrix2d p = widened(covariance.topLeftCorner<2, 2>()),
+                          n = widened(covariance.bottomRightCorner<2, 2>());
+    const Eigen::Matrix2d correlations =
+        inverse_root(n) * covariance.bottomLeftCorner<2, 2>() * inverse_root(p);
+    const double rho = std::sqrt(largest_eigenvalue(correlations * correlations.transpose()));
+    position = (1 + std::min(rho, 1.0)) * largest_eigenvalue(p);
+    normal = (1 + std::min(rho, 1.0)) * largest_eigenvalue(n);
+  }
+};
 
 template <typename Word>
 void put(Word word, int place, std::int16_t* record) {
@@ -167,8 +193,9 @@ struct ElementBound {
     low = low.cwiseMin(e.mean.head<2>());
     high = high.cwiseMax(e.mean.head<2>());
     normals.add(std::lround(e.mean[2] * MICA_NORMAL_ONE), std::lround(e.mean[3] * MICA_NORMAL_ONE));
-    variance_position = std::max(variance_position, largest_eigenvalue(e.covariance.topLeftCorner<2, 2>()));
-    variance_normal = std::max(variance_normal, largest_eigenvalue(e.covariance.bottomRightCorner<2, 2>()));
+    const SeparateVariances variances(e.covariance);
+    variance_position = std::max(variance_position, variances.position);
+    variance_normal = std::max(variance_normal, variances.normal);
   }
   void add(const ElementBound& other) {
     low = low.cwiseMin(other.low);
@@ -198,17 +225,23 @@ std::vector<ElementBound> add_nodes(const std::vector<ElementBound>& children, d
     nodes->resize(nodes->size() + MICA_PYRAMID_NODE_STRIDE);
     std::int16_t* node = nodes->data() + nodes->size() - MICA_PYRAMID_NODE_STRIDE;
     ElementBound all;
+    const std::size_t end = std::min(first + kChildren, children.size());
+    for (std::size_t child = first; child < end; ++child) all.add(children[child]);
+    const auto unit_of = [](double variance) { return static_cast<float>(variance / (MICA_BOUND_ONE - 1)); };
+    const float unit_p = unit_of(all.variance_position), unit_n = unit_of(all.variance_normal);
     for (std::size_t child = 0; child < kChildren; ++child) {
-      if (first + child < children.size()) {
-        store(children[first + child], group_size, child, node);
-        all.add(children[first + child]);
+      if (first + child < end) {
+        const ElementBound& bound = children[first + child];
+        store(bound, group_size, child, node);
+        node[128 + child] = to_short(std::ceil(bound.variance_position / unit_p));
+        node[144 + child] = to_short(std::ceil(bound.variance_normal / unit_n));
       } else {
         store(NormalBox{}, static_cast<int>(child), node + 64);
       }
     }
     put(static_cast<std::int32_t>(first), MICA_PYRAMID_NODE_CHILD, node);
-    put(static_cast<float>(2 * all.variance_position), MICA_PYRAMID_NODE_SPREAD_P, node);
-    put(static_cast<float>(2 * all.variance_normal), MICA_PYRAMID_NODE_SPREAD_N, node);
+    put(unit_p, MICA_PYRAMID_NODE_UNIT_P, node);
+    put(unit_n, MICA_PYRAMID_NODE_UNIT_N, node);
     bounds.push_back(all);
   }
   return bounds;

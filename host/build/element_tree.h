@@ -12,7 +12,7 @@ namespace mica {
 /// first.
 struct ElementTree {
   std::vector<std::int16_t> top_nodes, nodes, records;
-  double largest_variance = 0;  ///< of an element's position along any axis, texels^2
+  double largest_variance = 0;  ///< of the bounds of positions along any axis, texels^2
 };
 
 /// What sorts elements into records that are compact in position and normal.

@@ -101,7 +101,7 @@ PyramidLevel flatten(const Surface& surface, double cell_width, BlockGrid* grid)
   }
   level.groups.push_back(static_cast<std::int32_t>(level.top_nodes.size() / MICA_PYRAMID_NODE_STRIDE));
   for (const std::vector<CellMoments>& part : grid->parts) level.elements += part.size();
-  level.shape.spread = std::sqrt(2 * variance);
+  level.shape.spread = std::sqrt(variance);
   return level;
 }
 

@@ -14,7 +14,7 @@ namespace mica {
 struct PyramidShape {
   device_types::mica_map_grid grid{};  ///< the map, and in place of blocks the level's groups
   int group_size = 0;                  ///< texels a side; the last groups may be cut
-  double spread = 0;                   ///< largest sqrt(2 v) of a variance v of an element's position, texels
+  double spread = 0;  ///< largest square root of a variance of the bounds of positions, texels
 };
 
 /// A level of merged elements as the kernel reads it: one 4D Gaussian for each block of the map and cell of

@@ -13,11 +13,11 @@ double blocks_reached(const Query& query, int map_width, int map_height) {
 }
 
 CostModel gaussians_cost(int elements) {
-  if (elements == 1) return {930, 500, 2.7};
-  if (elements == 2) return {920, 560, 1.6};
-  return {1060, 310, 1.4};
+  if (elements == 1) return {360, 568, 1.7};
+  if (elements == 2) return {477, 675, 1.31};
+  return {441, 763, 1.17};
 }
-CostModel triangles_cost() { return {0, 1010, 0.036}; }
-CostModel pyramid_cost() { return {720, 0, 2.2}; }
+CostModel triangles_cost() { return {0, 781, 0.0312}; }
+CostModel pyramid_cost() { return {685, 0, 2.4}; }
 
 }  // namespace mica

@@ -115,7 +115,7 @@ std::vector<device_types::mica_pyramid_query> PyramidEvaluator::level_queries(
 PyramidEvaluator::Culling PyramidEvaluator::culling(const PyramidChoice& choice) {
   const auto found = cullings_.find(choice);
   if (found != cullings_.end()) return found->second;
-  constexpr double small_cutoff_error = 1e-6, share_of_error = 0.1;
+  constexpr double small_cutoff_error = 1e-6, share_of_error = 0.12;
   const Stopwatch watch;
   const std::vector<Query> queries = culling_sample(choice);
   PyramidLevelBatches& batches = level(choice);
@@ -125,7 +125,7 @@ PyramidEvaluator::Culling PyramidEvaluator::culling(const PyramidChoice& choice)
   const std::vector<float> complete = evaluate(cutoff_for(small_cutoff_error));
   Culling culling;
   const double cutoff_error = settings_.precision.cutoff_error;
-  for (const double finer : {1.0, 0.25, 0.0625}) {
+  for (const double finer : {1.0, 0.7, 0.5, 0.35, 0.25, 0.125, 0.0625}) {
     culling.cutoff = cutoff_for(finer * cutoff_error);
     const std::vector<float> culled = evaluate(culling.cutoff);
     double product = 0, square = 0, whole = 0;

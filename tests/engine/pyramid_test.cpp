@@ -117,6 +117,23 @@ TEST(Pyramid, KeepsOnePercentOfLongFootprints) {
   }
 }
 
+/// Of elements far wider than the roughness, whose normals follow from where they lie.
+TEST(Pyramid, DropsOnlyWhatIsBelowTheCutoff) {
+  const Surface surface = oblong();
+  const std::vector<Query> queries = random_queries(surface, 24, 24, 0.005, 400);
+  const auto evaluate = [&](double cutoff_error) {
+    PyramidSettings settings;
+    settings.precision = {1.42, 12, cutoff_error};
+    PyramidEvaluator pyramid(device(), surface, settings);
+    EXPECT_TRUE(pyramid.choose(queries.front()));
+    return pyramid.evaluate(queries);
+  };
+  const std::vector<float> all = evaluate(1e-12);
+  const double dropped = relative_l2(evaluate(1e-5), {all.begin(), all.end()});
+  std::printf("%.2g\n", dropped);
+  EXPECT_LE(dropped, 2e-6);
+}
+
 TEST(Pyramid, IntegratesToOne) {
   constexpr double roughness = 0.02;
   constexpr int side = 150;  // grid points across [-1, 1]: finer than the roughness
