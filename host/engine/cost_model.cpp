@@ -17,7 +17,11 @@ CostModel gaussians_cost(int elements) {
   if (elements == 2) return {477, 675, 1.31};
   return {441, 763, 1.17};
 }
-CostModel triangles_cost() { return {0, 781, 0.0312}; }
-CostModel pyramid_cost() { return {685, 0, 2.4}; }
+CostModel triangles_cost() {
+  return {0, 781, 0.0312};
+}
+CostModel pyramid_cost() {
+  return {685, 0, 2.4};
+}
 
 }  // namespace mica
