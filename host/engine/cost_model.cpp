@@ -13,15 +13,15 @@ double blocks_reached(const Query& query, int map_width, int map_height) {
 }
 
 CostModel gaussians_cost(int elements) {
-  if (elements == 1) return {360, 568, 1.7};
-  if (elements == 2) return {477, 675, 1.31};
-  return {441, 763, 1.17};
+  if (elements == 1) return {358, 420, 1.55};
+  if (elements == 2) return {162, 684, 1.22};
+  return {186, 824, 1.12};
 }
 CostModel triangles_cost() {
-  return {0, 781, 0.0312};
+  return {0, 742, 0.03};
 }
 CostModel pyramid_cost() {
-  return {685, 0, 2.4};
+  return {812, 0, 2.03};
 }
 
 }  // namespace mica
