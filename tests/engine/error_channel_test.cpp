@@ -7,12 +7,13 @@
 #include "host/base/error.h"
 #include "host/engine/render.h"
 #include "host/job/job.h"
+#include "tests/temporary_path.h"
 
 namespace mica {
 namespace {
 
 std::string plane_job() {
-  const std::string path = testing::TempDir() + "mica_error_channel_test.toml";
+  const std::string path = temporary_path("error_channel_test.toml");
   std::ofstream(path) << R"(
 [image]
 width = 40

@@ -10,6 +10,7 @@
 #include "host/engine/render.h"
 #include "host/image/image.h"
 #include "host/scene/masking.h"
+#include "tests/temporary_path.h"
 
 namespace mica {
 namespace {
@@ -19,7 +20,7 @@ constexpr double pi = 3.14159265358979323846;
 /// A plane, seen from a few degrees or, with a narrow `fov`, all alike.
 std::string plane_job(const std::string& material, const std::string& lights, double fov,
                       const std::string& image = "", int pixels = 24) {
-  const std::string path = testing::TempDir() + "mica_gather_light_test.toml";
+  const std::string path = temporary_path("gather_light_test.toml");
   std::ofstream(path) << "[image]\nwidth = " << pixels << "\nheight = " << pixels << "\nsubpixels = 1\n"
                       << image << "\n[camera]\nposition = [0.0, -3.0, 2.0]\nfov = " << fov << R"(
 [surface.flat]
@@ -85,7 +86,7 @@ std::string environment(const Function& radiance) {
                                                    std::cos(right) * std::sin(down), std::cos(down)));
       for (const double c : {color[0], color[1], color[2]}) image.pixels.push_back(static_cast<float>(c));
     }
-  const std::string path = testing::TempDir() + "mica_gather_light_test.exr";
+  const std::string path = temporary_path("gather_light_test.exr");
   write_exr(path, image);
   return "[[light]]\ntype = \"environment\"\nimage = \"" + path + "\"\n";
 }
@@ -275,7 +276,7 @@ TEST(GatherLight, NoPixelOfAKillerCaseIsAFirefly) {
 
 TEST(GatherLight, LightBouncesInAHollowSphere) {
   // Every point of a sphere sees every other alike: each bounce takes the albedo.
-  const std::string path = testing::TempDir() + "mica_gather_light_sphere.toml";
+  const std::string path = temporary_path("gather_light_sphere.toml");
   for (const int bounces : {1, 2, 5}) {
     std::ofstream(path) << "[image]\nwidth = 12\nheight = 12\nsubpixels = 1\nsamples = 64\nmax_bounces = "
                         << bounces << R"(

@@ -9,6 +9,7 @@
 #include "host/engine/render.h"
 #include "host/image/image.h"
 #include "host/job/job.h"
+#include "tests/temporary_path.h"
 
 namespace mica {
 namespace {
@@ -18,7 +19,7 @@ const char* const kFurnace = "type = \"furnace\"";
 
 /// A small picture of a sphere; `keys` go into its material.
 std::string sphere_job(const std::string& keys, const std::string& light = kSun) {
-  const std::string path = testing::TempDir() + "mica_glint_render_test.toml";
+  const std::string path = temporary_path("glint_render_test.toml");
   std::ofstream(path) << R"(
 [image]
 width = 96
@@ -60,7 +61,7 @@ double total(const RenderResult& result, std::size_t channel) {
 
 /// A grey ramp over u, from black to white.
 std::string ramp() {
-  const std::string path = testing::TempDir() + "mica_glint_ramp.exr";
+  const std::string path = temporary_path("glint_ramp.exr");
   Image image;
   image.width = 64, image.height = 2, image.channels = {"R", "G", "B"};
   for (int n = 0; n < 128; ++n) image.pixels.insert(image.pixels.end(), 3, static_cast<float>(n % 64) / 63);

@@ -8,13 +8,14 @@
 #include <fstream>
 
 #include "host/job/job.h"
+#include "tests/temporary_path.h"
 
 namespace mica {
 namespace {
 
 /// A small picture of a sphere of polished metal, with every AOV.
 std::string sphere_job(const std::string& light) {
-  const std::string path = testing::TempDir() + "mica_render_test.toml";
+  const std::string path = temporary_path("render_test.toml");
   std::ofstream(path) << R"(
 [image]
 width = 96
