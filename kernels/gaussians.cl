@@ -79,8 +79,10 @@ static inline void begin_slices(global const mica_mixture_query* query, private 
 
 static inline void slice_elements(private const leaf_results* by, private const element_wave* e, private slice_wave* slice) {
   // J a_i / tau_i, pulled: times p_i what the residual s - s0 - J A (m - c) moves by, whose m - c is -p.
-  const wave_float v1_s = fma(e->jx_s, by->pull_1x, e->jy_s * by->pull_1y), v1_t = fma(e->jx_t, by->pull_1x, e->jy_t * by->pull_1y);
-  const wave_float v2_s = fma(e->jx_s, by->pull_2x, e->jy_s * by->pull_2y), v2_t = fma(e->jx_t, by->pull_2x, e->jy_t * by->pull_2y);
+  const wave_float v1_s = fma(e->jx_s, by->pull_1x, e->jy_s * by->pull_1y);
+  const wave_float v1_t = fma(e->jx_t, by->pull_1x, e->jy_t * by->pull_1y);
+  const wave_float v2_s = fma(e->jx_s, by->pull_2x, e->jy_s * by->pull_2y);
+  const wave_float v2_t = fma(e->jx_t, by->pull_2x, e->jy_t * by->pull_2y);
   const wave_float r_s = fma(e->p1, v1_s, fma(e->p2, v2_s, e->e_s)), r_t = fma(e->p1, v1_t, fma(e->p2, v2_t, e->e_t));
   // I + M M^T is the covariance in roughnesses; its determinant and its inverse's form, without cancellation.
   const wave_float m1_s = by->blur_1 * v1_s, m1_t = by->blur_1 * v1_t, m2_s = by->blur_2 * v2_s, m2_t = by->blur_2 * v2_t;

@@ -13,7 +13,7 @@ typedef struct {
   wave_float q_position, form, det;
 } slice_wave;
 
-// The place, whitened, of lobes that are not there: they add nothing.
+// The whitened place, or its q_position, of lobes that are not there: they add nothing.
 #define NOWHERE 1e6f
 
 static inline wave_float slice_density(private const slice_wave* slice) {

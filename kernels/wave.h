@@ -80,7 +80,7 @@ static inline float wave_max(wave_float x, local int* scratch) {
 #define wave_load_float(pointer) ((pointer)[WAVE_LANE])
 #define wave_load_int(pointer) ((pointer)[WAVE_LANE])
 #define wave_store_float(value, pointer) ((pointer)[WAVE_LANE] = (value))
-// Lane (x, y) = (lane & 3, lane >> 2) reads pointer[y * row + x], and its right neighbour.
+// Lane (x, y) = (lane & 3, lane >> 2) reads pointer[y * row + x].
 #define wave_load_4x4(pointer, row) ((pointer)[(WAVE_LANE >> 2) * (row) + (WAVE_LANE & 3)])
 #define wave_load_short_4x4(pointer, row) convert_int((pointer)[(WAVE_LANE >> 2) * (row) + (WAVE_LANE & 3)])
 
