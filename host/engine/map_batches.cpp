@@ -52,26 +52,27 @@ mica_map_query& place_of(mica_smooth_query& query) {
 }
 
 /// Sorts by the Morton code of the tile under the mean: neighbours in a batch then read the same texels.
+/// @return each one's place before. @param batch_queries which slots count from zero in.
 template <typename DeviceQuery>
-void sort_by_footprint(std::vector<DeviceQuery>* queries) {
-  struct Key {
-    std::uint64_t code;
-    std::uint32_t index;
-  };
-  std::vector<Key> keys(queries->size());
-  tbb::parallel_for(std::size_t{0}, keys.size(), [&](std::size_t n) {
+std::vector<std::uint32_t> sort_by_footprint(std::size_t batch_queries, std::vector<DeviceQuery>* queries) {
+  const std::size_t count = queries->size();
+  std::vector<std::uint64_t> keys(count);  // the code, then the place: equal codes keep their order
+  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t n) {
     const mica_map_query& q = place_of((*queries)[n]);
     const std::uint64_t morton = spread_bits(q.mean_i / device_types::MICA_TILE) |
                                  (spread_bits(q.mean_j / device_types::MICA_TILE) << 1);
-    keys[n] = {morton, static_cast<std::uint32_t>(n)};
+    keys[n] = morton << 32 | n;
   });
-  tbb::parallel_sort(keys, [](const Key& a, const Key& b) {
-    return a.code != b.code ? a.code < b.code : a.index < b.index;
+  tbb::parallel_sort(keys);
+  std::vector<DeviceQuery> sorted(count);
+  std::vector<std::uint32_t> order(count);
+  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t n) {
+    order[n] = static_cast<std::uint32_t>(keys[n]);
+    sorted[n] = (*queries)[order[n]];
+    place_of(sorted[n]).slot = static_cast<std::int32_t>(n % batch_queries);
   });
-  std::vector<DeviceQuery> sorted(keys.size());
-  tbb::parallel_for(std::size_t{0}, keys.size(),
-                    [&](std::size_t n) { sorted[n] = (*queries)[keys[n].index]; });
   queries->swap(sorted);
+  return order;
 }
 
 double seconds_of(const cl::Event& event) {
@@ -106,10 +107,13 @@ class MapBatches<DeviceQuery>::Densities : public PendingDensities {
     // are something else, and have signs.
     const float least = answers == 1 ? 0.0f : -std::numeric_limits<float>::infinity();
     std::vector<float> ordered(results.size());
-    for (std::size_t n = 0; n < results.size(); ++n) {
-      if (!std::isfinite(results[n])) throw DeviceError("evaluating " + method + ": a density is not finite");
-      ordered[order[n / answers] * answers + n % answers] = std::max(results[n], least);
-    }
+    tbb::parallel_for(std::size_t{0}, order.size(), [&](std::size_t n) {
+      for (std::size_t k = 0; k < answers; ++k) {
+        const float result = results[n * answers + k];
+        if (!std::isfinite(result)) throw DeviceError("evaluating " + method + ": a density is not finite");
+        ordered[order[n] * answers + k] = std::max(result, least);
+      }
+    });
     return ordered;
   }
 
@@ -151,20 +155,13 @@ MapBatches<DeviceQuery>::MapBatches(Device& device, const device_types::mica_map
 template <typename DeviceQuery>
 std::unique_ptr<PendingDensities> MapBatches<DeviceQuery>::start(std::vector<DeviceQuery> queries) {
   auto pending = std::make_unique<Densities>();
-  for (std::size_t n = 0; n < queries.size(); ++n) place_of(queries[n]).slot = static_cast<std::int32_t>(n);
-  sort_by_footprint(&queries);
+  pending->order = sort_by_footprint(batch_queries_, &queries);
   pending->method = method_;
   pending->queries = std::move(queries);
   pending->device_seconds = device_seconds_;
   const std::size_t count = pending->queries.size();
-  pending->order.resize(count);
   pending->answers = answers_;
   pending->results.resize(count * answers_);
-  for (std::size_t n = 0; n < count; ++n) {
-    std::int32_t& slot = place_of(pending->queries[n]).slot;
-    pending->order[n] = static_cast<std::uint32_t>(slot);
-    slot = static_cast<std::int32_t>(n % batch_queries_);
-  }
   for (std::size_t first = 0; first < count; first += batch_queries_) enqueue(first, pending.get());
   return pending;
 }

@@ -61,6 +61,7 @@ void wrap_texel(double coordinate, int size, double shift, std::int32_t* whole, 
 /// those: 0.8 periods of the lattice line along it.
 Footprint without_needless_periods(const Footprint& footprint) {
   constexpr double uniform_variance = kUniformVariance;
+  if (footprint.cov_uv.diagonal().maxCoeff() <= uniform_variance) return footprint;  // as most are
   const Eigen::Matrix2d waves = reduced_waves(footprint.cov_uv);
   const Eigen::Matrix2d form = waves.transpose() * footprint.cov_uv * waves;
   if (form(1, 1) <= uniform_variance) return footprint;
@@ -116,14 +117,20 @@ std::string query_problem(const Query& query, int map_width, int map_height) {
 
 device_types::mica_map_query to_map_query(const Query& query, const device_types::mica_map_grid& grid,
                                           Interpolation interpolation, double cutoff) {
+  const Footprint footprint = without_needless_periods(query.footprint);
+  const FootprintAxes axes = footprint_axes(footprint, grid.width, grid.height);
+  return to_map_query(query, footprint, axes, grid, interpolation, cutoff);
+}
+
+device_types::mica_map_query to_map_query(const Query& query, const Footprint& footprint,
+                                          const FootprintAxes& axes, const device_types::mica_map_grid& grid,
+                                          Interpolation interpolation, double cutoff) {
   device_types::mica_map_query result{};
   // Interpolated quads span texel centres, constant texels span texels.
   const double shift = interpolation == Interpolation::nearest ? 0.0 : 0.5;
   wrap_texel(query.footprint.mean_uv.x(), grid.width, shift, &result.mean_i, &result.mean_x);
   wrap_texel(query.footprint.mean_uv.y(), grid.height, shift, &result.mean_j, &result.mean_y);
 
-  const Footprint footprint = without_needless_periods(query.footprint);
-  const FootprintAxes axes = footprint_axes(footprint, grid.width, grid.height);
   const Eigen::Vector2d row_1 = axes.major / axes.sigma_major_texels,
                         row_2 = axes.minor / axes.sigma_minor_texels;
   result.whiten_1x = static_cast<float>(row_1.x()), result.whiten_1y = static_cast<float>(row_1.y());
@@ -181,9 +188,9 @@ double sum_of_weights(const Eigen::Matrix2d& cov_spacings, const Eigen::Vector2d
 device_types::mica_mixture_query to_mixture_query(const Query& query, const device_types::mica_map_grid& grid,
                                                   Interpolation interpolation, int elements, double cutoff) {
   device_types::mica_mixture_query result{};
-  result.map = to_map_query(query, grid, interpolation, cutoff);
-  const FootprintAxes axes =
-      footprint_axes(without_needless_periods(query.footprint), grid.width, grid.height);
+  const Footprint footprint = without_needless_periods(query.footprint);
+  const FootprintAxes axes = footprint_axes(footprint, grid.width, grid.height);
+  result.map = to_map_query(query, footprint, axes, grid, interpolation, cutoff);
   const double spacing = 1.0 / elements;
   const double k = kPositionKernelVariance * spacing * spacing;
   const double sigma_1 = axes.sigma_major_texels, sigma_2 = axes.sigma_minor_texels;

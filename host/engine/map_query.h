@@ -40,6 +40,11 @@ double sum_of_weights(const Eigen::Matrix2d& cov_spacings, const Eigen::Vector2d
 device_types::mica_map_query to_map_query(const Query& query, const device_types::mica_map_grid& grid,
                                           Interpolation interpolation, double cutoff);
 
+/// The same where the footprint `without_needless_periods` and its axes are known.
+device_types::mica_map_query to_map_query(const Query& query, const Footprint& footprint,
+                                          const FootprintAxes& axes, const device_types::mica_map_grid& grid,
+                                          Interpolation interpolation, double cutoff);
+
 /// The same for triangles, which need no footprint to go by where it is many periods wide: those of one
 /// period count once.
 device_types::mica_map_query to_triangle_query(const Query& query, const device_types::mica_map_grid& grid,

@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <cmath>
+#include <numeric>
 
 #include "host/base/stopwatch.h"
 #include "host/engine/accuracy.h"
@@ -16,17 +17,16 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// Cells narrower than this would be more than a map has texels; so small a roughness goes to the texels.
-constexpr double kNarrowestCell = 1.0 / 512;
+}  // namespace
 
-/// Queries that one level answers, and what its answers count.
-struct Share {
-  std::vector<std::size_t> places;
-  std::vector<float> weights;
-};
+PyramidEvaluator::PyramidEvaluator(Device& device, const Surface& surface, const PyramidSettings& settings)
+    : device_(device),
+      surface_(surface),
+      settings_(settings),
+      wave_form_(settings.wave_form.value_or(device.wave_form())) {}
 
 /// Answers of several levels; a query's are added in the order of its levels, whatever it is sent with.
-class BlendedDensities : public PendingDensities {
+class PyramidEvaluator::BlendedDensities : public PendingDensities {
  public:
   explicit BlendedDensities(std::size_t count) : densities_(count) {}
 
@@ -36,8 +36,9 @@ class BlendedDensities : public PendingDensities {
   std::vector<float> wait() override {
     for (Part& part : parts_) {
       const std::vector<float> answers = part.pending->wait();
-      for (std::size_t n = 0; n < answers.size(); ++n)
+      tbb::parallel_for(std::size_t{0}, answers.size(), [&](std::size_t n) {
         densities_[part.share.places[n]] += part.share.weights[n] * answers[n];
+      });
     }
     return std::move(densities_);
   }
@@ -51,58 +52,60 @@ class BlendedDensities : public PendingDensities {
   std::vector<float> densities_;
 };
 
-}  // namespace
-
-PyramidEvaluator::PyramidEvaluator(Device& device, const Surface& surface, const PyramidSettings& settings)
-    : device_(device),
-      surface_(surface),
-      settings_(settings),
-      wave_form_(settings.wave_form.value_or(device.wave_form())) {}
-
 std::unique_ptr<PendingDensities> PyramidEvaluator::start(const std::vector<Query>& queries, bool counting) {
-  std::map<PyramidChoice, Share> by_level;
-  std::vector<std::size_t> small;
-  const auto add = [&](const PyramidChoice& choice, std::size_t place, double weight) {
-    by_level[choice].places.push_back(place);
-    by_level[choice].weights.push_back(static_cast<float>(counting ? 1 : weight));
-  };
-  for (std::size_t n = 0; n < queries.size(); ++n) {
-    const std::optional<PyramidChoice> choice = choose(queries[n]);
-    if (!choice) {
-      small.push_back(n);
-      continue;
-    }
-    for (const PyramidShare& share : shares_of(queries[n], *choice, surface_.width(), surface_.height(),
-                                               finest_block(choice->cell_class), settings_.precision))
-      add(share.choice, n, share.weight);
-  }
+  LevelsOfQueries levels = levels_of(queries, counting);
   auto all = std::make_unique<BlendedDensities>(queries.size());
-  std::vector<Query> some;
-  const auto take = [&](const std::vector<std::size_t>& places) {
-    some.resize(places.size());
-    for (std::size_t n = 0; n < places.size(); ++n) some[n] = queries[places[n]];
-  };
-  for (auto& [choice, share] : by_level) {
-    take(share.places);
+  for (auto& [choice, share] : levels.by_level) {
     PyramidLevelBatches& batches = level(choice);
-    std::vector<device_types::mica_pyramid_query> sent = level_queries(some, choice, culling(choice));
+    auto sent = level_queries(queries, share.places, choice, culling(choice));
     all->add(counting ? batches.start_count(std::move(sent)) : batches.start(std::move(sent)),
              std::move(share));
   }
-  if (!small.empty()) {
-    take(small);
-    const std::vector<float> ones(small.size(), 1.0f);
-    all->add(texels(counting)->start(some), {std::move(small), ones});
-  }
+  if (levels.small.empty()) return all;
+  std::vector<Query> some;
+  for (const std::uint32_t place : levels.small) some.push_back(queries[place]);
+  const std::vector<float> ones(some.size(), 1.0f);
+  all->add(texels(counting)->start(some), {std::move(levels.small), ones});
   return all;
 }
 
-std::vector<device_types::mica_pyramid_query> PyramidEvaluator::level_queries(
-    const std::vector<Query>& queries, const PyramidChoice& choice, const Culling& culling) {
-  const PyramidShape& shape = level(choice).shape();
-  std::vector<device_types::mica_pyramid_query> result(queries.size());
+PyramidEvaluator::LevelsOfQueries PyramidEvaluator::levels_of(const std::vector<Query>& queries,
+                                                              bool counting) {
+  std::vector<std::optional<PyramidShares>> shares(queries.size());
   tbb::parallel_for(std::size_t{0}, queries.size(), [&](std::size_t n) {
-    result[n] = to_pyramid_query(queries[n], shape, surface_.interpolation(), culling.cutoff, choice.uniform);
+    shares[n] = shares_of(queries[n], surface_.width(), surface_.height(), settings_.precision);
+  });
+  LevelsOfQueries levels;
+  const auto add = [&](const PyramidChoice& choice, std::size_t n, double weight) {
+    if (weight <= 0) return;
+    Share& share = levels.by_level[choice];
+    share.places.push_back(static_cast<std::uint32_t>(n));
+    share.weights.push_back(static_cast<float>(counting ? 1 : weight));
+  };
+  const int whole_map = whole_map_block(surface_.width(), surface_.height());
+  for (std::size_t n = 0; n < queries.size(); ++n) {
+    if (!shares[n] || shares[n]->choice.block < finest_block(shares[n]->choice.cell_class)) {
+      levels.small.push_back(static_cast<std::uint32_t>(n));
+      continue;
+    }
+    const PyramidChoice& choice = shares[n]->choice;
+    const double uniform = shares[n]->uniform,
+                 finer = choice.block / 2 < finest_block(choice.cell_class) ? 0 : shares[n]->finer;
+    add({choice.cell_class, choice.block / 2, false}, n, (1 - uniform) * finer);
+    add(choice, n, (1 - uniform) * (1 - finer));
+    add({choice.cell_class, whole_map, true}, n, uniform);
+  }
+  return levels;
+}
+
+std::vector<device_types::mica_pyramid_query> PyramidEvaluator::level_queries(
+    const std::vector<Query>& queries, const std::vector<std::uint32_t>& places, const PyramidChoice& choice,
+    const Culling& culling) {
+  const PyramidShape& shape = level(choice).shape();
+  std::vector<device_types::mica_pyramid_query> result(places.size());
+  tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t n) {
+    result[n] =
+        to_pyramid_query(queries[places[n]], shape, surface_.interpolation(), culling.cutoff, choice.uniform);
     result[n].map.scale *= static_cast<float>(culling.gain);
   });
   return result;
@@ -118,9 +121,11 @@ PyramidEvaluator::Culling PyramidEvaluator::culling(const PyramidChoice& choice)
   constexpr double small_cutoff_error = 1e-6, share_of_error = 0.12;
   const Stopwatch watch;
   const std::vector<Query> queries = culling_sample(choice);
+  std::vector<std::uint32_t> places(queries.size());
+  std::iota(places.begin(), places.end(), 0u);
   PyramidLevelBatches& batches = level(choice);
   const auto evaluate = [&](double cutoff) {
-    return batches.start(level_queries(queries, choice, {cutoff, 1}))->wait();
+    return batches.start(level_queries(queries, places, choice, {cutoff, 1}))->wait();
   };
   const std::vector<float> complete = evaluate(cutoff_for(small_cutoff_error));
   Culling culling;
@@ -168,12 +173,10 @@ std::vector<Query> PyramidEvaluator::culling_sample(const PyramidChoice& choice)
 }
 
 std::optional<PyramidChoice> PyramidEvaluator::choose(const Query& query) {
-  const std::optional<PyramidChoice> choice =
-      choose_level(query, surface_.width(), surface_.height(), settings_.precision);
-  if (!choice || cell_width(choice->cell_class, settings_.precision) < kNarrowestCell ||
-      choice->block < finest_block(choice->cell_class))
-    return std::nullopt;
-  return choice;
+  const std::optional<PyramidShares> shares =
+      shares_of(query, surface_.width(), surface_.height(), settings_.precision);
+  if (!shares || shares->choice.block < finest_block(shares->choice.cell_class)) return std::nullopt;
+  return shares->choice;
 }
 
 int PyramidEvaluator::finest_block(int cell_class) {

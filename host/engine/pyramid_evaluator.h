@@ -3,6 +3,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "host/device/device.h"
 #include "host/engine/evaluator.h"
@@ -50,13 +51,26 @@ class PyramidEvaluator : public Evaluator {
   WaveForm wave_form() const { return wave_form_; }
 
  private:
-  std::unique_ptr<PendingDensities> start(const std::vector<Query>& queries, bool counting);
-  int finest_block(int cell_class);
+  /// Queries that one level answers, and what its answers count.
+  struct Share {
+    std::vector<std::uint32_t> places;
+    std::vector<float> weights;
+  };
+  struct LevelsOfQueries {
+    std::map<PyramidChoice, Share> by_level;
+    std::vector<std::uint32_t> small;  ///< queries for the texels
+  };
   /// What a level's queries leave out, and the factor that makes up for it.
   struct Culling {
     double cutoff = 0, gain = 1;
   };
+  class BlendedDensities;
+
+  std::unique_ptr<PendingDensities> start(const std::vector<Query>& queries, bool counting);
+  LevelsOfQueries levels_of(const std::vector<Query>& queries, bool counting);
+  int finest_block(int cell_class);
   std::vector<device_types::mica_pyramid_query> level_queries(const std::vector<Query>& queries,
+                                                              const std::vector<std::uint32_t>& places,
                                                               const PyramidChoice& choice,
                                                               const Culling& culling);
   Culling culling(const PyramidChoice& choice);

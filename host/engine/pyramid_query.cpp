@@ -15,18 +15,15 @@ constexpr double kSlack = 1e-9;           // of ratios that are meant to be equa
 constexpr double kBlendOctaves = 0.25;    // of a footprint's width, over which one level fades into another
 constexpr double kUniformVariance = 0.8 * 0.8;  // see without_needless_periods
 
-/// How wide a footprint is, in octaves, beyond where the fading into a uniform one begins.
+/// Cells narrower than this would be more than a map has texels; so small a roughness goes to the texels.
+constexpr double kNarrowestCell = 1.0 / 512;
+
+/// How wide a footprint is, in octaves, beyond where the fading into a uniform one begins; not below zero.
 double octaves_into_uniform(const Footprint& footprint) {
   const Eigen::Matrix2d& cov = footprint.cov_uv;
+  if (2 * cov.diagonal().minCoeff() < kUniformVariance) return 0;  // as most are
   const double smaller = 0.5 * (cov(0, 0) + cov(1, 1)) - std::hypot(0.5 * (cov(0, 0) - cov(1, 1)), cov(0, 1));
-  return kBlendOctaves + 0.5 * std::log2(std::max(smaller, 1e-30) / kUniformVariance);
-}
-
-/// Standard deviation that says which level is read; while it fades into a uniform one, a footprint keeps
-/// its.
-double level_sigma_texels(const Footprint& footprint, int map_width, int map_height) {
-  return footprint_axes(footprint, map_width, map_height).sigma_minor_texels *
-         std::exp2(-std::max(octaves_into_uniform(footprint), 0.0));
+  return std::max(kBlendOctaves + 0.5 * std::log2(std::max(smaller, 1e-30) / kUniformVariance), 0.0);
 }
 
 }  // namespace
@@ -35,42 +32,25 @@ double cell_width(int cell_class, const PyramidPrecision& precision) {
   return precision.cell_ratio * kFirstRoughness * std::exp2(0.5 * cell_class);
 }
 
-std::optional<PyramidChoice> choose_level(const Query& query, int map_width, int map_height,
-                                          const PyramidPrecision& precision) {
-  PyramidChoice choice;
+std::optional<PyramidShares> shares_of(const Query& query, int map_width, int map_height,
+                                       const PyramidPrecision& precision) {
+  PyramidShares shares;
+  PyramidChoice& choice = shares.choice;
   choice.cell_class = static_cast<int>(std::floor(2 * std::log2(query.roughness / kFirstRoughness) + kSlack));
-  const int whole_map = whole_map_block(map_width, map_height);
+  if (cell_width(choice.cell_class, precision) < kNarrowestCell) return std::nullopt;
+  choice.block = whole_map_block(map_width, map_height);
   const Footprint footprint = without_needless_periods(query.footprint);
-  const FootprintAxes axes = footprint_axes(footprint, map_width, map_height);
   choice.uniform = footprint.cov_uv == Eigen::Matrix2d::Identity() * kUniformVariance;
-  if (choice.uniform) {
-    choice.block = whole_map;
-    return choice;
-  }
+  if (choice.uniform) return shares;
+  const FootprintAxes axes = footprint_axes(footprint, map_width, map_height);
   if (axes.sigma_major_texels > kLargestAspect * axes.sigma_minor_texels) return std::nullopt;
-  const double largest =
-      precision.block_ratio * level_sigma_texels(footprint, map_width, map_height) * (1 + kSlack);
-  if (largest < kFinestBlock) return std::nullopt;
-  choice.block = whole_map;
-  while (choice.block > largest) choice.block /= 2;
-  return choice;
-}
-
-std::vector<PyramidShare> shares_of(const Query& query, const PyramidChoice& choice, int map_width,
-                                    int map_height, int finest_block, const PyramidPrecision& precision) {
-  if (choice.uniform) return {{choice, 1}};
-  const Footprint footprint = without_needless_periods(query.footprint);
-  const double room =
-      std::log2(precision.block_ratio * level_sigma_texels(footprint, map_width, map_height) / choice.block);
-  const double finer = choice.block / 2 < finest_block ? 0 : std::clamp(1 - room / kBlendOctaves, 0.0, 1.0);
-  const double uniform = std::clamp(octaves_into_uniform(footprint) / kBlendOctaves, 0.0, 1.0);
-  std::vector<PyramidShare> shares;
-  const auto add = [&shares](const PyramidChoice& level, double weight) {
-    if (weight > 0) shares.push_back({level, weight});
-  };
-  add({choice.cell_class, choice.block / 2, false}, (1 - uniform) * finer);
-  add(choice, (1 - uniform) * (1 - finer));
-  add({choice.cell_class, whole_map_block(map_width, map_height), true}, uniform);
+  // While it fades into a uniform one, a footprint keeps its level.
+  const double into_uniform = octaves_into_uniform(footprint);
+  const double largest = precision.block_ratio * axes.sigma_minor_texels * std::exp2(-into_uniform);
+  if (largest * (1 + kSlack) < kFinestBlock) return std::nullopt;
+  while (choice.block > largest * (1 + kSlack)) choice.block /= 2;
+  shares.finer = std::clamp(1 - std::log2(largest / choice.block) / kBlendOctaves, 0.0, 1.0);
+  shares.uniform = std::clamp(into_uniform / kBlendOctaves, 0.0, 1.0);
   return shares;
 }
 
@@ -79,7 +59,9 @@ device_types::mica_pyramid_query to_pyramid_query(const Query& query, const Pyra
   device_types::mica_pyramid_query result{};
   const int width = level.grid.width, height = level.grid.height;
   result.group_size = level.group_size;
-  result.map = to_map_query(query, level.grid, interpolation, cutoff);
+  const Footprint footprint = without_needless_periods(query.footprint);
+  const FootprintAxes axes = footprint_axes(footprint, width, height);
+  result.map = to_map_query(query, footprint, axes, level.grid, interpolation, cutoff);
   if (uniform) {
     // All of the map at once, with the same weight: a footprint so wide that every position counts alike.
     const double sigma = 1e4 * std::max(width, height);
@@ -92,7 +74,6 @@ device_types::mica_pyramid_query to_pyramid_query(const Query& query, const Pyra
                                           (static_cast<double>(width) * height));
     return result;
   }
-  const FootprintAxes axes = footprint_axes(without_needless_periods(query.footprint), width, height);
   const double variance_1 = axes.sigma_major_texels * axes.sigma_major_texels,
                variance_2 = axes.sigma_minor_texels * axes.sigma_minor_texels;
   const Eigen::Matrix2d cov =

@@ -2,7 +2,6 @@
 
 #include <optional>
 #include <tuple>
-#include <vector>
 
 #include "host/base/query.h"
 #include "host/build/moment_pyramid.h"
@@ -36,21 +35,19 @@ constexpr double kLargestAspect = 128;
 /// Cells come in widths half an octave apart: those of roughness 0.02 and sqrt(2)^n times as much.
 double cell_width(int cell_class, const PyramidPrecision& precision);
 
-/// None when the footprint is too small, or so thin that single precision cannot tell its determinant.
-std::optional<PyramidChoice> choose_level(const Query& query, int map_width, int map_height,
-                                          const PyramidPrecision& precision);
-
-/// What a query takes of a level.
-struct PyramidShare {
-  PyramidChoice choice;
-  double weight = 1;
+/// What a query takes of each level. Levels fade into each other, so that a zoom does not show where they
+/// change: a footprint that is hardly wide enough for its own level takes a share of the one with half its
+/// blocks, and one that is about to be uniform takes a share of that.
+struct PyramidShares {
+  PyramidChoice choice;  ///< its own level, which gets what the others leave
+  double finer = 0;      ///< of what is not uniform, for the level with half the blocks, where there is one
+  double uniform = 0;    ///< for the whole map at once
 };
 
-/// Levels fade into each other, so that a zoom does not show where they change: a footprint that is hardly
-/// wide enough for `choice`, its own, takes a share of the level with half its blocks, where that is not
-/// finer than `finest_block`, and one that is about to be uniform takes a share of that. One to three shares.
-std::vector<PyramidShare> shares_of(const Query& query, const PyramidChoice& choice, int map_width,
-                                    int map_height, int finest_block, const PyramidPrecision& precision);
+/// None when the footprint or the roughness is too small, or the footprint so thin that single precision
+/// cannot tell its determinant.
+std::optional<PyramidShares> shares_of(const Query& query, int map_width, int map_height,
+                                       const PyramidPrecision& precision);
 
 /// The query in the kernel's form. @param uniform of the choice.
 device_types::mica_pyramid_query to_pyramid_query(const Query& query, const PyramidShape& level,
