@@ -21,16 +21,15 @@ typedef struct {
 
 // The sixteen elements of a record; without the query's scale.
 static inline void take_record(global const mica_pyramid_query* query, global const short* record, group_place place,
-                               float position_unit, private record_results* results) {
-  const element_lobes e = slice_record(query, query->map.half_s, query->map.half_t, record, place, position_unit);
+                               private record_results* results) {
+  const element_lobes e = slice_record(query, query->map.half_s, query->map.half_t, record, place);
   const wave_float form = fma(e.r_s, fma(e.n_tt, e.r_s, -2.0f * e.n_st * e.r_t), e.n_ss * e.r_t * e.r_t);
   const wave_float q = fma(form * e.root, e.root, e.q_position);
   results->sum += e.weight * gaussian_exp2(max((-EXP2_SCALE * EXP2_SCALE) * q, -126.0f));
   results->count += WAVE_LANES;
 }
 
-#define RECORD_TAKE(query, record, place, position_unit, results, scratch) \
-  take_record(query, record, place, position_unit, results)
+#define RECORD_TAKE(query, record, place, results, scratch) take_record(query, record, place, results)
 #include "walk_records.h"
 
 // Density of every query, in the order of their slots. Global size: queries (vectors), or 16 a query (items).

@@ -6,6 +6,19 @@
 #include "pyramid_types.h"
 #include "wave.h"
 
+// Bits of a record's numbers: 16 or 8.
+#ifndef MICA_RECORD_BITS
+#define MICA_RECORD_BITS 16
+#endif
+#if MICA_RECORD_BITS == 16
+#define RECORD_STRIDE MICA_RECORD_STRIDE_16
+#define ELEMENT_FIELD(record, field) wave_to_float(wave_load_short((record) + MICA_RECORD_FIELDS_16 + 16 * (field)))
+#else
+#define RECORD_STRIDE MICA_RECORD_STRIDE_8
+#define ELEMENT_FIELD(record, field) \
+  wave_to_float(wave_load_char((global const char*)((record) + MICA_RECORD_FIELDS_8 + 8 * (field))))
+#endif
+
 // Where a group lies: its corner less the footprint's mean, texels.
 typedef struct {
   float x, y;
@@ -61,11 +74,9 @@ typedef struct {
   wave_float root;            // 1 / sqrt(det n)
 } element_lobes;
 
-#define ELEMENT_FIELD(record, field) wave_to_float(wave_load_short((record) + MICA_RECORD_FIELDS + 16 * (field)))
-
 // `half_s`, `half_t`: fixed point.
 static inline element_lobes slice_record(global const mica_pyramid_query* query, int half_s, int half_t, global const short* record,
-                                         group_place place, float position_unit) {
+                                         group_place place) {
   global const int* int_header = (global const int*)record;
   global const float* header = (global const float*)record;
   const float to_roughness = query->map.inverse_roughness;
@@ -77,8 +88,9 @@ static inline element_lobes slice_record(global const mica_pyramid_query* query,
   const float k_unit = to_roughness * header[MICA_RECORD_CROSS_UNIT];
 
   // m - c, and P + F with its adjugate in place of its inverse.
-  const wave_float x = fma(ELEMENT_FIELD(record, MICA_ELEMENT_X), -position_unit, -place.x);
-  const wave_float y = fma(ELEMENT_FIELD(record, MICA_ELEMENT_Y), -position_unit, -place.y);
+  const float place_unit = -header[MICA_RECORD_PLACE_UNIT];
+  const wave_float x = fma(ELEMENT_FIELD(record, MICA_ELEMENT_X), place_unit, -(place.x + header[MICA_RECORD_ORIGIN_X]));
+  const wave_float y = fma(ELEMENT_FIELD(record, MICA_ELEMENT_Y), place_unit, -(place.y + header[MICA_RECORD_ORIGIN_Y]));
   const wave_float p_xx = fma(ELEMENT_FIELD(record, MICA_ELEMENT_XX), p_unit, query->cov_xx);
   const wave_float p_xy = fma(ELEMENT_FIELD(record, MICA_ELEMENT_XY), p_unit, query->cov_xy);
   const wave_float p_yy = fma(ELEMENT_FIELD(record, MICA_ELEMENT_YY), p_unit, query->cov_yy);

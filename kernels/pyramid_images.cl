@@ -4,12 +4,11 @@
 #include "splat.h"
 
 typedef splat_target record_results;
-#define RECORD_TAKE(query, record, place, position_unit, target, scratch) \
-  take_record(query, record, place, position_unit, target, scratch)
+#define RECORD_TAKE(query, record, place, target, scratch) take_record(query, record, place, target, scratch)
 
 static inline void take_record(global const mica_pyramid_query* query, global const short* record, group_place place,
-                               float position_unit, private const splat_target* target, WAVE_SHARED int* scratch) {
-  const element_lobes lobes = slice_record(query, 0, 0, record, place, position_unit);
+                               private const splat_target* target, WAVE_SHARED int* scratch) {
+  const element_lobes lobes = slice_record(query, 0, 0, record, place);
   splat(*target, &lobes, 1.0f / query->map.inverse_roughness, query->map.cutoff, query->map.scale, scratch);
 }
 

@@ -18,18 +18,23 @@ namespace mica::device_types {
 enum {
   MICA_GROUP_BLOCKS = 4,
 
-  // A record: its header, then sixteen shorts a field.
-  MICA_RECORD_STRIDE = 256,    // shorts
-  MICA_RECORD_FIELDS = 16,     // shorts before the first field: a header of eight words
+  // A record: a header of words, then sixteen numbers a field, of 16 bits or, where a map's levels would take too much
+  // memory, of 8. Both begin and end where vectors are loaded best.
+  MICA_RECORD_FIELDS_16 = 32, MICA_RECORD_STRIDE_16 = 272,  // shorts before the first field, and of a record
+  MICA_RECORD_FIELDS_8 = 24, MICA_RECORD_STRIDE_8 = 144,
+  MICA_RECORD_ONE_16 = 32767, MICA_RECORD_ONE_8 = 127,      // largest number of a field
   MICA_RECORD_ORIGIN_S = 0,    // int: what mean_s and mean_t count from, fixed point like normals
   MICA_RECORD_ORIGIN_T,        // int
+  MICA_RECORD_ORIGIN_X,        // float: what x and y count from, texels from the group's corner
+  MICA_RECORD_ORIGIN_Y,        // float
   MICA_RECORD_MEAN_UNIT,       // float: what one of mean_s and mean_t counts
+  MICA_RECORD_PLACE_UNIT,      // float: of x and y, texels
   MICA_RECORD_WEIGHT_UNIT,     // float: texels^2
   MICA_RECORD_POSITION_UNIT,   // float: of covariances of position, texels^2
   MICA_RECORD_NORMAL_UNIT,     // float: of covariances of normals
   MICA_RECORD_CROSS_UNIT,      // float: of covariances of position with normal, texels
 
-  // A node: sixteen shorts a bound, x, half width, y, half height (like positions), s_min, s_max, t_min, t_max, and the
+  // A node: sixteen shorts a bound, x, half width, y, half height (of MICA_BOUND_ONE groups), s_min, s_max, t_min, t_max, and the
   // largest variances of an element's position and of its normal, as if neither told of the other; then words.
   MICA_PYRAMID_NODE_STRIDE = 168,  // shorts
   MICA_PYRAMID_NODE_CHILD = 80,    // words before it; int: index of the first child
@@ -40,7 +45,7 @@ enum {
 // Fields of a record, after its header.
 enum {
   MICA_ELEMENT_WEIGHT,
-  MICA_ELEMENT_X, MICA_ELEMENT_Y,  // mean position: of MICA_BOUND_ONE groups from the group's corner
+  MICA_ELEMENT_X, MICA_ELEMENT_Y,  // mean position
   MICA_ELEMENT_S, MICA_ELEMENT_T,  // mean normal
   MICA_ELEMENT_XX, MICA_ELEMENT_XY, MICA_ELEMENT_YY,                   // covariances
   MICA_ELEMENT_SX, MICA_ELEMENT_SY, MICA_ELEMENT_TX, MICA_ELEMENT_TY,

@@ -1,6 +1,6 @@
 // Included by a kernel of `pyramid`: the way from the groups under a footprint down to the records that matter to it. The
 // kernel says what to do with one:
-//   record_results, RECORD_TAKE(query, record, place, position_unit, results, scratch)   what a record adds to.
+//   record_results, RECORD_TAKE(query, record, place, results, scratch)   what a record adds to.
 #ifndef MICA_WALK_RECORDS_H
 #define MICA_WALK_RECORDS_H
 
@@ -30,7 +30,7 @@ static inline void walk_records(global const mica_pyramid_query* query, half_vec
           uint leaves = surviving_records(query, half_vectors, node, place, position_unit, scratch);
           for (; leaves; leaves &= leaves - 1) {
             const size_t record = node_word(node, MICA_PYRAMID_NODE_CHILD) + lowest_bit(leaves);
-            RECORD_TAKE(query, records + record * MICA_RECORD_STRIDE, place, position_unit, results, scratch);
+            RECORD_TAKE(query, records + record * RECORD_STRIDE, place, results, scratch);
           }
         }
       }

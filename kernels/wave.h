@@ -77,6 +77,7 @@ static inline float wave_max(wave_float x, local int* scratch) {
 }
 
 #define wave_load_short(pointer) convert_int((pointer)[WAVE_LANE])
+#define wave_load_char(pointer) convert_int((pointer)[WAVE_LANE])
 #define wave_load_float(pointer) ((pointer)[WAVE_LANE])
 #define wave_load_int(pointer) ((pointer)[WAVE_LANE])
 #define wave_store_float(value, pointer) ((pointer)[WAVE_LANE] = (value))
@@ -103,6 +104,7 @@ typedef float16 wave_float_anywhere __attribute__((aligned(4)));
 typedef int4 wave_quarter_int_anywhere __attribute__((aligned(4)));
 typedef int16 wave_int_anywhere __attribute__((aligned(4)));
 typedef short16 wave_short_anywhere __attribute__((aligned(2)));
+typedef char16 wave_char_anywhere __attribute__((aligned(1)));
 #define WAVE_SHARED private
 #define WAVE_DECLARE_SCRATCH(name) int name[1]
 #define WAVE_ITEM_INDEX ((int)get_global_id(0))
@@ -189,6 +191,7 @@ static inline float wave_max(wave_float x, private int* scratch) {
 }
 
 #define wave_load_short(pointer) convert_int16(*(global const wave_short_anywhere*)(pointer))
+#define wave_load_char(pointer) convert_int16(*(global const wave_char_anywhere*)(pointer))
 #define wave_load_float(pointer) (*(global const wave_float_anywhere*)(pointer))
 #define wave_load_int(pointer) (*(global const wave_int_anywhere*)(pointer))
 #define wave_store_float(value, pointer) (*(global wave_float_anywhere*)(pointer) = (value))

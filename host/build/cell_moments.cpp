@@ -16,6 +16,29 @@ constexpr int kMostCuts = 8;
 
 constexpr int kBicubicParts = 4;  // a texel and axis
 
+/// Of the block's mean, the weight that a light cell has at most: on noise a fifth of the cells, and 2% of
+/// the weight.
+constexpr double kLight = 0.2;
+
+/// Of the cells around `part` that are not empty, the one with the nearest mean normal; null without any.
+CellMoments* nearest_neighbour(const NormalCells& cells, const CellMoments& part,
+                               std::vector<CellMoments>* parts) {
+  CellMoments* nearest = nullptr;
+  double least = 8 * cells.width() * cells.width();  // farther is the other end of a row of cells
+  const Eigen::Vector2d normal = part.moments.mean().tail<2>();
+  for (const int row : {-1, 0, 1}) {
+    const int first = part.cell + row * cells.columns() - 1;
+    auto found = std::lower_bound(parts->begin(), parts->end(), first,
+                                  [](const CellMoments& a, int cell) { return a.cell < cell; });
+    for (; found != parts->end() && found->cell <= first + 2; ++found) {
+      if (&*found == &part || !(found->moments.weight > 0)) continue;
+      const double distance = (found->moments.mean().tail<2>() - normal).squaredNorm();
+      if (distance < least) nearest = &*found, least = distance;
+    }
+  }
+  return nearest;
+}
+
 }  // namespace
 
 NormalCells::NormalCells(const Surface& surface, double width) : width_(width) {
@@ -41,7 +64,7 @@ BlockMoments::BlockMoments(const Surface& surface, const NormalCells& cells)
 
 std::vector<CellMoments> BlockMoments::block(int first_i, int first_j, int size) {
   if (first_i >= surface_.width() || first_j >= surface_.height()) return {};
-  if (size == kBaseBlock) return base_block(first_i, first_j);
+  if (size < 2 * kBaseBlock) return base_block(first_i, first_j, size);
   const int half = size / 2;
   const std::vector<CellMoments> quarters[] = {
       block(first_i, first_j, half), block(first_i + half, first_j, half),
@@ -55,9 +78,9 @@ std::vector<CellMoments> BlockMoments::merge(const std::vector<const std::vector
   return take();
 }
 
-std::vector<CellMoments> BlockMoments::base_block(int first_i, int first_j) {
-  for (int j = first_j; j < std::min(first_j + kBaseBlock, surface_.height()); ++j)
-    for (int i = first_i; i < std::min(first_i + kBaseBlock, surface_.width()); ++i) add_texel(i, j);
+std::vector<CellMoments> BlockMoments::base_block(int first_i, int first_j, int size) {
+  for (int j = first_j; j < std::min(first_j + size, surface_.height()); ++j)
+    for (int i = first_i; i < std::min(first_i + size, surface_.width()); ++i) add_texel(i, j);
   return take();
 }
 
@@ -135,6 +158,23 @@ std::vector<CellMoments> BlockMoments::take() {
   }
   sums_.clear();
   return taken;
+}
+
+std::vector<CellMoments> without_light_cells(const NormalCells& cells, std::vector<CellMoments> parts) {
+  double weight = 0;
+  for (const CellMoments& part : parts) weight += part.moments.weight;
+  const double light = kLight * weight / static_cast<double>(parts.size());
+  for (CellMoments& part : parts) {
+    if (part.moments.weight > light || !(part.moments.weight > 0)) continue;
+    CellMoments* const neighbour = nearest_neighbour(cells, part, &parts);
+    if (neighbour == nullptr) continue;
+    neighbour->moments.add(part.moments);
+    part.moments = {};
+  }
+  parts.erase(std::remove_if(parts.begin(), parts.end(),
+                             [](const CellMoments& part) { return !(part.moments.weight > 0); }),
+              parts.end());
+  return parts;
 }
 
 }  // namespace mica

@@ -107,72 +107,105 @@ void put(Word word, int place, std::int16_t* record) {
   std::memcpy(record + 2 * place, &word, sizeof word);
 }
 
+/// Least and largest of some elements' means.
+struct MeanBox {
+  Eigen::Vector4d low, high;
+
+  MeanBox(const Element* first, std::size_t count) : low(first->mean), high(first->mean) {
+    for (std::size_t n = 1; n < count; ++n) {
+      low = low.cwiseMin(first[n].mean);
+      high = high.cwiseMax(first[n].mean);
+    }
+  }
+  Eigen::Vector4d middle() const { return 0.5 * (low + high); }
+  Eigen::Vector4d reach() const { return 0.5 * (high - low); }
+};
+
 /// Writes up to sixteen elements; missing ones get no weight.
+/// @tparam Number std::int16_t or std::int8_t, which the fields are of.
+template <typename Number>
 class RecordWriter {
  public:
-  RecordWriter(const Element* first, std::size_t count, double group_size, std::int16_t* record)
-      : first_(first), count_(count), record_(record), group_size_(group_size) {}
+  RecordWriter(const Element* first, std::size_t count, std::int16_t* record)
+      : first_(first), count_(count), record_(record), means_(first, count) {}
 
-  void write() const {
-    const double position =
-        largest([](const Element& e) { return e.covariance.topLeftCorner<2, 2>().cwiseAbs().maxCoeff(); });
-    const double normal = largest(
-        [](const Element& e) { return e.covariance.bottomRightCorner<2, 2>().cwiseAbs().maxCoeff(); });
-    const double cross =
-        largest([](const Element& e) { return e.covariance.bottomLeftCorner<2, 2>().cwiseAbs().maxCoeff(); });
-    const double weight = largest([](const Element& e) { return e.weight; });
-    Eigen::Vector2d low = first_->mean.tail<2>(), high = low;
-    for (std::size_t n = 1; n < count_; ++n) {
-      low = low.cwiseMin(first_[n].mean.tail<2>());
-      high = high.cwiseMax(first_[n].mean.tail<2>());
-    }
-    // In fixed point, so that the difference from a half vector is exact.
-    const Eigen::Vector2d middle = 0.5 * (low + high);
-    const auto origin_s = static_cast<std::int32_t>(std::lround(middle.x() * MICA_NORMAL_ONE));
-    const auto origin_t = static_cast<std::int32_t>(std::lround(middle.y() * MICA_NORMAL_ONE));
-    const Eigen::Vector2d origin = Eigen::Vector2d(origin_s, origin_t) / MICA_NORMAL_ONE;
-    const double reach = std::max(0.5 * (high - low).maxCoeff() + 1.0 / MICA_NORMAL_ONE, 1e-12);
-    put(origin_s, MICA_RECORD_ORIGIN_S, record_);
-    put(origin_t, MICA_RECORD_ORIGIN_T, record_);
-    const double mean_unit = put_unit(reach, MICA_RECORD_MEAN_UNIT);
-    const double weight_unit = put_unit(weight, MICA_RECORD_WEIGHT_UNIT);
-    const double position_unit = put_unit(position, MICA_RECORD_POSITION_UNIT);
-    const double normal_unit = put_unit(normal, MICA_RECORD_NORMAL_UNIT);
-    const double cross_unit = put_unit(cross, MICA_RECORD_CROSS_UNIT);
-
-    for (std::size_t n = 0; n < count_; ++n) {
-      const Element& e = first_[n];
-      const auto field = [&](int index, double value) {
-        record_[MICA_RECORD_FIELDS + kChildren * index + n] = to_short(value);
-      };
-      field(MICA_ELEMENT_WEIGHT, e.weight / weight_unit);
-      field(MICA_ELEMENT_X, e.mean[0] / group_size_ * MICA_BOUND_ONE);
-      field(MICA_ELEMENT_Y, e.mean[1] / group_size_ * MICA_BOUND_ONE);
-      field(MICA_ELEMENT_S, (e.mean[2] - origin[0]) / mean_unit);
-      field(MICA_ELEMENT_T, (e.mean[3] - origin[1]) / mean_unit);
-      field(MICA_ELEMENT_XX, e.covariance(0, 0) / position_unit);
-      field(MICA_ELEMENT_XY, e.covariance(0, 1) / position_unit);
-      field(MICA_ELEMENT_YY, e.covariance(1, 1) / position_unit);
-      field(MICA_ELEMENT_SX, e.covariance(2, 0) / cross_unit);
-      field(MICA_ELEMENT_SY, e.covariance(2, 1) / cross_unit);
-      field(MICA_ELEMENT_TX, e.covariance(3, 0) / cross_unit);
-      field(MICA_ELEMENT_TY, e.covariance(3, 1) / cross_unit);
-      field(MICA_ELEMENT_SS, e.covariance(2, 2) / normal_unit);
-      field(MICA_ELEMENT_ST, e.covariance(2, 3) / normal_unit);
-      field(MICA_ELEMENT_TT, e.covariance(3, 3) / normal_unit);
-    }
+  void write() {
+    write_means();
+    write_weights();
+    const double p_unit = put_unit(largest_covariance<0, 0>(), MICA_RECORD_POSITION_UNIT),
+                 n_unit = put_unit(largest_covariance<2, 2>(), MICA_RECORD_NORMAL_UNIT),
+                 k_unit = put_unit(largest_covariance<2, 0>(), MICA_RECORD_CROSS_UNIT);
+    const auto write_covariance = [this](int index, int row, int column, double unit) {
+      for (std::size_t n = 0; n < count_; ++n) field(index, n, first_[n].covariance(row, column) / unit);
+    };
+    write_covariance(MICA_ELEMENT_XX, 0, 0, p_unit);
+    write_covariance(MICA_ELEMENT_XY, 0, 1, p_unit);
+    write_covariance(MICA_ELEMENT_YY, 1, 1, p_unit);
+    write_covariance(MICA_ELEMENT_SX, 2, 0, k_unit);
+    write_covariance(MICA_ELEMENT_SY, 2, 1, k_unit);
+    write_covariance(MICA_ELEMENT_TX, 3, 0, k_unit);
+    write_covariance(MICA_ELEMENT_TY, 3, 1, k_unit);
+    write_covariance(MICA_ELEMENT_SS, 2, 2, n_unit);
+    write_covariance(MICA_ELEMENT_ST, 2, 3, n_unit);
+    write_covariance(MICA_ELEMENT_TT, 3, 3, n_unit);
   }
 
  private:
-  template <typename Value>
-  double largest(const Value& value) const {
-    double result = 0;
-    for (std::size_t n = 0; n < count_; ++n) result = std::max(result, value(first_[n]));
-    return result;
+  static constexpr bool kShort = sizeof(Number) == 2;
+  static constexpr int kOne = kShort ? MICA_RECORD_ONE_16 : MICA_RECORD_ONE_8;
+
+  void write_means() {
+    const Eigen::Vector4d middle = means_.middle(), reach = means_.reach();
+    // Normals in fixed point, so that the difference from a half vector is exact.
+    const auto origin_s = static_cast<std::int32_t>(std::lround(middle[2] * MICA_NORMAL_ONE));
+    const auto origin_t = static_cast<std::int32_t>(std::lround(middle[3] * MICA_NORMAL_ONE));
+    const auto origin_x = static_cast<float>(middle[0]), origin_y = static_cast<float>(middle[1]);
+    put(origin_s, MICA_RECORD_ORIGIN_S, record_);
+    put(origin_t, MICA_RECORD_ORIGIN_T, record_);
+    put(origin_x, MICA_RECORD_ORIGIN_X, record_);
+    put(origin_y, MICA_RECORD_ORIGIN_Y, record_);
+    const double least = 1.0 / MICA_NORMAL_ONE;
+    const double normal_unit = put_unit(reach.tail<2>().maxCoeff() + least, MICA_RECORD_MEAN_UNIT),
+                 place_unit = put_unit(reach.head<2>().maxCoeff() + least, MICA_RECORD_PLACE_UNIT);
+    for (std::size_t n = 0; n < count_; ++n) {
+      const Eigen::Vector4d& mean = first_[n].mean;
+      field(MICA_ELEMENT_X, n, (mean[0] - origin_x) / place_unit);
+      field(MICA_ELEMENT_Y, n, (mean[1] - origin_y) / place_unit);
+      field(MICA_ELEMENT_S, n, (mean[2] - static_cast<double>(origin_s) / MICA_NORMAL_ONE) / normal_unit);
+      field(MICA_ELEMENT_T, n, (mean[3] - static_cast<double>(origin_t) / MICA_NORMAL_ONE) / normal_unit);
+    }
+  }
+
+  /// What rounding takes from an element the next one gets, so that small ones do not vanish.
+  void write_weights() {
+    double largest = 0, left = 0;
+    for (std::size_t n = 0; n < count_; ++n) largest = std::max(largest, first_[n].weight);
+    const double unit = put_unit(largest, MICA_RECORD_WEIGHT_UNIT);
+    for (std::size_t n = 0; n < count_; ++n) {
+      left += first_[n].weight / unit;
+      left -= field(MICA_ELEMENT_WEIGHT, n, left);
+    }
+  }
+
+  template <int row, int column>
+  double largest_covariance() const {
+    double largest = 0;
+    for (std::size_t n = 0; n < count_; ++n)
+      largest =
+          std::max(largest, first_[n].covariance.template block<2, 2>(row, column).cwiseAbs().maxCoeff());
+    return largest;
+  }
+  /// The number as it is written.
+  double field(int index, std::size_t n, double value) {
+    const auto number = static_cast<Number>(std::clamp<long>(std::lround(value), -kOne, kOne));
+    auto* const fields =
+        reinterpret_cast<Number*>(record_ + (kShort ? MICA_RECORD_FIELDS_16 : MICA_RECORD_FIELDS_8));
+    fields[kChildren * index + n] = number;
+    return number;
   }
   /// The unit as the kernel will read it.
-  double put_unit(double largest_value, int place) const {
-    const auto unit = static_cast<float>(std::max(largest_value, 1e-30) / MICA_BOUND_ONE);
+  double put_unit(double largest_value, int place) {
+    const auto unit = static_cast<float>(std::max(largest_value, 1e-30) / kOne);
     put(unit, place, record_);
     return unit;
   }
@@ -180,7 +213,7 @@ class RecordWriter {
   const Element* first_;
   std::size_t count_;
   std::int16_t* record_;
-  double group_size_;
+  MeanBox means_;
 };
 
 /// What a node says of one child.
@@ -249,6 +282,10 @@ std::vector<ElementBound> add_nodes(const std::vector<ElementBound>& children, d
 
 }  // namespace
 
+int record_stride(int record_bits) {
+  return record_bits == 16 ? MICA_RECORD_STRIDE_16 : MICA_RECORD_STRIDE_8;
+}
+
 ElementTree build_element_tree(const GroupShape& group, const std::vector<CellMoments>& parts) {
   Elements elements;
   elements.reserve(parts.size());
@@ -260,13 +297,16 @@ ElementTree build_element_tree(const GroupShape& group, const std::vector<CellMo
   }
   CompactOrder(&elements, group);
   ElementTree tree;
+  tree.elements = elements.size();
   std::vector<ElementBound> bounds;
   for (std::size_t first = 0; first < elements.size(); first += kChildren) {
     const std::size_t count = std::min(kChildren, elements.size() - first);
-    tree.records.resize(tree.records.size() + MICA_RECORD_STRIDE);
-    RecordWriter(&elements[first], count, group.size_texels,
-                 tree.records.data() + tree.records.size() - MICA_RECORD_STRIDE)
-        .write();
+    const std::size_t at = tree.records.size();
+    tree.records.resize(at + record_stride(group.record_bits));
+    if (group.record_bits == 16)
+      RecordWriter<std::int16_t>(&elements[first], count, &tree.records[at]).write();
+    else
+      RecordWriter<std::int8_t>(&elements[first], count, &tree.records[at]).write();
     ElementBound bound;
     for (std::size_t n = first; n < first + count; ++n) bound.add(elements[n]);
     tree.largest_variance = std::max(tree.largest_variance, bound.variance_position);

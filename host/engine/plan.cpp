@@ -60,7 +60,7 @@ void plan_structure(PlannedEvaluator* planned) {
     planned->kernel = "none";
   } else if (planned->evaluator == "pyramid" || planned->evaluator == "auto") {
     planned->device_bytes =
-        map_structure_bytes(width, height) + 4 * PyramidSettings{}.level_bytes / 3;  // at most
+        map_structure_bytes(width, height) + pyramid_levels_bytes(width, height);  // at most
     if (planned->evaluator == "auto") planned->kernel = "chosen from a sample of the job's queries";
   } else {
     planned->device_bytes = planned->evaluator == "gaussians" ? gaussian_mixture_bytes(width, height)

@@ -2,6 +2,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -17,7 +18,15 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
+/// Cells narrower than this would be more than a map has texels; so small a roughness goes to the texels.
+constexpr double kNarrowestCell = 1.0 / 512;
+
 }  // namespace
+
+std::size_t pyramid_levels_bytes(int map_width, int map_height) {
+  constexpr std::size_t bytes_a_texel = 22, least = std::size_t{16} << 20;
+  return std::max(least, bytes_a_texel * map_width * map_height);
+}
 
 PyramidEvaluator::PyramidEvaluator(Device& device, const Surface& surface, const PyramidSettings& settings)
     : device_(device),
@@ -71,10 +80,11 @@ std::unique_ptr<PendingDensities> PyramidEvaluator::start(const std::vector<Quer
 
 PyramidEvaluator::LevelsOfQueries PyramidEvaluator::levels_of(const std::vector<Query>& queries,
                                                               bool counting) {
-  std::vector<std::optional<PyramidShares>> shares(queries.size());
-  tbb::parallel_for(std::size_t{0}, queries.size(), [&](std::size_t n) {
-    shares[n] = shares_of(queries[n], surface_.width(), surface_.height(), settings_.precision);
-  });
+  double last_roughness = 0;
+  for (const Query& query : queries)
+    if (query.roughness != last_roughness) add_levels(last_roughness = query.roughness);
+  std::vector<std::optional<PyramidShares>> all(queries.size());
+  tbb::parallel_for(std::size_t{0}, queries.size(), [&](std::size_t n) { all[n] = shares(queries[n]); });
   LevelsOfQueries levels;
   const auto add = [&](const PyramidChoice& choice, std::size_t n, double weight) {
     if (weight <= 0) return;
@@ -82,18 +92,16 @@ PyramidEvaluator::LevelsOfQueries PyramidEvaluator::levels_of(const std::vector<
     share.places.push_back(static_cast<std::uint32_t>(n));
     share.weights.push_back(static_cast<float>(counting ? 1 : weight));
   };
-  const int whole_map = whole_map_block(surface_.width(), surface_.height());
   for (std::size_t n = 0; n < queries.size(); ++n) {
-    if (!shares[n] || shares[n]->choice.block < finest_block(shares[n]->choice.cell_class)) {
+    if (!all[n]) {
       levels.small.push_back(static_cast<std::uint32_t>(n));
       continue;
     }
-    const PyramidChoice& choice = shares[n]->choice;
-    const double uniform = shares[n]->uniform,
-                 finer = choice.block / 2 < finest_block(choice.cell_class) ? 0 : shares[n]->finer;
-    add({choice.cell_class, choice.block / 2, false}, n, (1 - uniform) * finer);
+    const auto& [choice, finer, uniform] = *all[n];
+    const int cell_class = choice.cell_class;
+    add({cell_class, choice.block / 2, false}, n, (1 - uniform) * finer);
     add(choice, n, (1 - uniform) * (1 - finer));
-    add({choice.cell_class, whole_map, true}, n, uniform);
+    if (uniform > 0) add({cell_class, whole_map(cell_class), true}, n, uniform);
   }
   return levels;
 }
@@ -172,28 +180,32 @@ std::vector<Query> PyramidEvaluator::culling_sample(const PyramidChoice& choice)
   return queries;
 }
 
-std::optional<PyramidChoice> PyramidEvaluator::choose(const Query& query) {
-  const std::optional<PyramidShares> shares =
-      shares_of(query, surface_.width(), surface_.height(), settings_.precision);
-  if (!shares || shares->choice.block < finest_block(shares->choice.cell_class)) return std::nullopt;
-  return shares->choice;
+void PyramidEvaluator::add_levels(double roughness) {
+  const int cell_class = cell_class_of(roughness);
+  const double width = cell_width(cell_class, settings_.precision);
+  if (width < kNarrowestCell || levels_of_class_.count(cell_class) != 0) return;
+  const Stopwatch watch;
+  const std::size_t bytes =
+      settings_.levels_bytes.value_or(pyramid_levels_bytes(surface_.width(), surface_.height()));
+  levels_of_class_[cell_class] = levels_that_fit(surface_, width, bytes);
+  build_seconds_ += watch.seconds();
 }
 
-int PyramidEvaluator::finest_block(int cell_class) {
-  const auto found = finest_block_.find(cell_class);
-  if (found != finest_block_.end()) return found->second;
-  const Stopwatch watch;
-  const double width = cell_width(cell_class, settings_.precision);
-  const int whole_map = whole_map_block(surface_.width(), surface_.height());
-  int block = kFinestBlock;
-  while (block < whole_map) {
-    std::size_t bytes = estimate_level_bytes(surface_, width, block);
-    if (bytes <= settings_.level_bytes) break;
-    for (; block < whole_map && bytes > settings_.level_bytes; bytes /= 4) block *= 2;  // at best
-  }
-  finest_block_[cell_class] = block;
-  build_seconds_ += watch.seconds();
-  return block;
+std::optional<PyramidShares> PyramidEvaluator::shares(const Query& query) const {
+  const auto found = levels_of_class_.find(cell_class_of(query.roughness));
+  if (found == levels_of_class_.end()) return std::nullopt;
+  return shares_of(query, surface_.width(), surface_.height(), found->second.finest_block,
+                   settings_.precision);
+}
+
+int PyramidEvaluator::whole_map(int cell_class) const {
+  return whole_map_block(surface_.width(), surface_.height(), levels_of_class_.at(cell_class).finest_block);
+}
+
+std::optional<PyramidChoice> PyramidEvaluator::choose(const Query& query) {
+  add_levels(query.roughness);
+  const std::optional<PyramidShares> found = shares(query);
+  return found ? std::optional(found->choice) : std::nullopt;
 }
 
 /// Coarser levels come with the one that is needed: together they take a third of it.
@@ -202,11 +214,12 @@ PyramidLevelBatches& PyramidEvaluator::level(const PyramidChoice& choice) {
   const auto found = levels_.find(key);
   if (found != levels_.end()) return found->second;
   const Stopwatch watch;
-  build_moment_pyramid(surface_, cell_width(choice.cell_class, settings_.precision), choice.block,
-                       [&](int block, const PyramidLevel& built) {
-                         levels_.try_emplace(PyramidChoice{choice.cell_class, block, false}, device_, built,
-                                             wave_form_, settings_.batch_queries);
-                       });
+  PyramidLevels built_levels = levels_of_class_.at(choice.cell_class);
+  built_levels.finest_block = choice.block;
+  build_moment_pyramid(surface_, built_levels, [&](int block, const PyramidLevel& built) {
+    levels_.try_emplace(PyramidChoice{choice.cell_class, block, false}, device_, built, wave_form_,
+                        settings_.batch_queries);
+  });
   build_seconds_ += watch.seconds();
   return levels_.at(key);
 }

@@ -15,10 +15,14 @@ namespace mica {
 
 struct PyramidSettings {
   PyramidPrecision precision;
-  std::size_t level_bytes = std::size_t{48} << 20;  ///< of a level, at most; finer ones are not built
-  std::size_t batch_queries = 1 << 17;              ///< queries a launch, at most
-  std::optional<WaveForm> wave_form;                ///< default: what suits the device
+  std::optional<std::size_t> levels_bytes;  ///< of a roughness's levels; default: pyramid_levels_bytes
+  std::size_t batch_queries = 1 << 17;      ///< queries a launch, at most
+  std::optional<WaveForm> wave_form;        ///< default: what suits the device
 };
+
+/// What the levels of one class of roughnesses may take; finer ones are not built. With the texels of a
+/// 2048^2 map that is 126 MiB.
+std::size_t pyramid_levels_bytes(int map_width, int map_height);
 
 /// `pyramid`: merged elements, whose number does not grow with the footprint; kernels/pyramid.cl. Levels are
 /// built when the first query needs them. Footprints that are too small for the finest level go to the texels
@@ -68,7 +72,10 @@ class PyramidEvaluator : public Evaluator {
 
   std::unique_ptr<PendingDensities> start(const std::vector<Query>& queries, bool counting);
   LevelsOfQueries levels_of(const std::vector<Query>& queries, bool counting);
-  int finest_block(int cell_class);
+  void add_levels(double roughness);
+  /// Of levels that were added.
+  std::optional<PyramidShares> shares(const Query& query) const;
+  int whole_map(int cell_class) const;
   std::vector<device_types::mica_pyramid_query> level_queries(const std::vector<Query>& queries,
                                                               const std::vector<std::uint32_t>& places,
                                                               const PyramidChoice& choice,
@@ -82,7 +89,7 @@ class PyramidEvaluator : public Evaluator {
   PyramidSettings settings_;
   WaveForm wave_form_;
   double build_seconds_ = 0;
-  std::map<int, int> finest_block_;  // by cell class
+  std::map<int, PyramidLevels> levels_of_class_;
   std::map<PyramidChoice, PyramidLevelBatches> levels_;
   std::map<PyramidChoice, Culling> cullings_;
   std::unique_ptr<Evaluator> texels_, counting_texels_;

@@ -25,8 +25,9 @@ std::unique_ptr<PendingDensities> PyramidLevelBatches::start_count(
 
 PyramidLevelBatches::Batches PyramidLevelBatches::make_batches(bool count_elements) const {
   return Batches(device_, shape_.grid, buffers_, bytes_, "pyramid",
-                 fmt::format("-DMICA_COUNT_ELEMENTS={}", static_cast<int>(count_elements)), wave_form_,
-                 batch_queries_);
+                 fmt::format("-DMICA_RECORD_BITS={} -DMICA_COUNT_ELEMENTS={}", shape_.record_bits,
+                             static_cast<int>(count_elements)),
+                 wave_form_, batch_queries_);
 }
 
 }  // namespace mica

@@ -75,7 +75,8 @@ std::vector<float> PyramidPainter::paint_level(const std::vector<Query>& footpri
   auto found = levels_.find(key);
   if (found == levels_.end())
     found = levels_
-                .try_emplace(key, device_, level.shape().grid, level.buffers(), "pyramid_images", "",
+                .try_emplace(key, device_, level.shape().grid, level.buffers(), "pyramid_images",
+                             fmt::format("-DMICA_RECORD_BITS={}", level.shape().record_bits),
                              pyramid_.wave_form())
                 .first;
   std::vector<device_types::mica_pyramid_query> queries(footprints.size());

@@ -15,9 +15,6 @@ constexpr double kSlack = 1e-9;           // of ratios that are meant to be equa
 constexpr double kBlendOctaves = 0.25;    // of a footprint's width, over which one level fades into another
 constexpr double kUniformVariance = 0.8 * 0.8;  // see without_needless_periods
 
-/// Cells narrower than this would be more than a map has texels; so small a roughness goes to the texels.
-constexpr double kNarrowestCell = 1.0 / 512;
-
 /// How wide a footprint is, in octaves, beyond where the fading into a uniform one begins; not below zero.
 double octaves_into_uniform(const Footprint& footprint) {
   const Eigen::Matrix2d& cov = footprint.cov_uv;
@@ -28,17 +25,20 @@ double octaves_into_uniform(const Footprint& footprint) {
 
 }  // namespace
 
+int cell_class_of(double roughness) {
+  return static_cast<int>(std::floor(2 * std::log2(roughness / kFirstRoughness) + kSlack));
+}
+
 double cell_width(int cell_class, const PyramidPrecision& precision) {
   return precision.cell_ratio * kFirstRoughness * std::exp2(0.5 * cell_class);
 }
 
-std::optional<PyramidShares> shares_of(const Query& query, int map_width, int map_height,
+std::optional<PyramidShares> shares_of(const Query& query, int map_width, int map_height, int finest_block,
                                        const PyramidPrecision& precision) {
   PyramidShares shares;
   PyramidChoice& choice = shares.choice;
-  choice.cell_class = static_cast<int>(std::floor(2 * std::log2(query.roughness / kFirstRoughness) + kSlack));
-  if (cell_width(choice.cell_class, precision) < kNarrowestCell) return std::nullopt;
-  choice.block = whole_map_block(map_width, map_height);
+  choice.cell_class = cell_class_of(query.roughness);
+  choice.block = whole_map_block(map_width, map_height, finest_block);
   const Footprint footprint = without_needless_periods(query.footprint);
   choice.uniform = footprint.cov_uv == Eigen::Matrix2d::Identity() * kUniformVariance;
   if (choice.uniform) return shares;
@@ -47,9 +47,10 @@ std::optional<PyramidShares> shares_of(const Query& query, int map_width, int ma
   // While it fades into a uniform one, a footprint keeps its level.
   const double into_uniform = octaves_into_uniform(footprint);
   const double largest = precision.block_ratio * axes.sigma_minor_texels * std::exp2(-into_uniform);
-  if (largest * (1 + kSlack) < kFinestBlock) return std::nullopt;
+  if (largest * (1 + kSlack) < finest_block) return std::nullopt;
   while (choice.block > largest * (1 + kSlack)) choice.block /= 2;
-  shares.finer = std::clamp(1 - std::log2(largest / choice.block) / kBlendOctaves, 0.0, 1.0);
+  if (choice.block > finest_block)
+    shares.finer = std::clamp(1 - std::log2(largest / choice.block) / kBlendOctaves, 0.0, 1.0);
   shares.uniform = std::clamp(into_uniform / kBlendOctaves, 0.0, 1.0);
   return shares;
 }

@@ -18,7 +18,7 @@ struct PyramidPrecision {
   double cutoff_error = 3e-2;  ///< weight, of the largest, at which culling may drop an element
 };
 
-/// The level that a query reads. A function of the query and the map's size alone.
+/// The level that a query reads. A function of the query and of which levels its map has.
 struct PyramidChoice {
   int cell_class = 0;  ///< cells have a width of cell_width(cell_class, precision)
   int block = 0;       ///< texels; the whole map's for a footprint that wraps to a uniform one
@@ -32,7 +32,9 @@ struct PyramidChoice {
 /// Single precision keeps 0.1% of the determinant of a footprint with this ratio of its axes.
 constexpr double kLargestAspect = 128;
 
-/// Cells come in widths half an octave apart: those of roughness 0.02 and sqrt(2)^n times as much.
+/// Cells come in widths half an octave apart: those of roughness 0.02 and sqrt(2)^n times as much. The widest
+/// that are not too wide for a roughness.
+int cell_class_of(double roughness);
 double cell_width(int cell_class, const PyramidPrecision& precision);
 
 /// What a query takes of each level. Levels fade into each other, so that a zoom does not show where they
@@ -44,9 +46,10 @@ struct PyramidShares {
   double uniform = 0;    ///< for the whole map at once
 };
 
-/// None when the footprint or the roughness is too small, or the footprint so thin that single precision
-/// cannot tell its determinant.
-std::optional<PyramidShares> shares_of(const Query& query, int map_width, int map_height,
+/// None when the footprint is too small for the finest level, or so thin that single precision cannot tell
+/// its determinant.
+/// @param finest_block of the levels of the query's class of cells.
+std::optional<PyramidShares> shares_of(const Query& query, int map_width, int map_height, int finest_block,
                                        const PyramidPrecision& precision);
 
 /// The query in the kernel's form. @param uniform of the choice.

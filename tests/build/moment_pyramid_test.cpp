@@ -8,6 +8,7 @@
 #include <map>
 
 #include "host/build/cell_moments.h"
+#include "host/build/element_tree.h"
 
 namespace mica {
 namespace {
@@ -23,9 +24,10 @@ Surface noise(int width, int height) {
   return Surface(width, height, Interpolation::bilinear, std::move(normals));
 }
 
-std::map<int, PyramidLevel> levels(const Surface& surface, double cell_width, int finest) {
+std::map<int, PyramidLevel> levels(const Surface& surface, double cell_width, int finest,
+                                   bool compact = false) {
   std::map<int, PyramidLevel> all;
-  build_moment_pyramid(surface, cell_width, finest,
+  build_moment_pyramid(surface, {cell_width, finest, compact},
                        [&](int block, PyramidLevel level) { all[block] = std::move(level); });
   return all;
 }
@@ -37,6 +39,13 @@ Word word(const std::int16_t* shorts, int place) {
   return value;
 }
 
+int field_of(const std::int16_t* record, int bits, int index, int lane) {
+  if (bits == 16) return record[MICA_RECORD_FIELDS_16 + 16 * index + lane];
+  std::int8_t field = 0;
+  std::memcpy(&field, reinterpret_cast<const char*>(record + MICA_RECORD_FIELDS_8) + 16 * index + lane, 1);
+  return field;
+}
+
 /// Weight, mean normal and second moments of the normal over all of a level, from its bytes.
 struct Total {
   double weight = 0;
@@ -45,9 +54,10 @@ struct Total {
 };
 Total total_of(const PyramidLevel& level) {
   Total total;
-  for (std::size_t at = 0; at < level.records.size(); at += MICA_RECORD_STRIDE) {
+  const int bits = level.shape.record_bits;
+  for (std::size_t at = 0; at < level.records.size(); at += record_stride(bits)) {
     const std::int16_t* record = level.records.data() + at;
-    const auto field = [&](int index, int lane) { return record[MICA_RECORD_FIELDS + 16 * index + lane]; };
+    const auto field = [&](int index, int lane) { return field_of(record, bits, index, lane); };
     for (int lane = 0; lane < 16; ++lane) {
       const double weight = word<float>(record, MICA_RECORD_WEIGHT_UNIT) * field(MICA_ELEMENT_WEIGHT, lane);
       const double unit = word<float>(record, MICA_RECORD_MEAN_UNIT);
@@ -87,16 +97,24 @@ Total total_of(const Surface& surface) {
   return total;
 }
 
-/// 16 bits a number: 2e-5 of each.
+/// Numbers are rounded to 1.5e-5 or 0.4% of the largest of sixteen; over a level that averages out.
 TEST(MomentPyramid, KeepsAreaMeanAndCovarianceOfTheNormals) {
   const Surface surface = noise(150, 90);
   const Total expected = total_of(surface);
-  for (const double cell : {0.01, 0.05, 0.3}) {
-    for (const auto& [block, level] : levels(surface, cell, 16)) {
-      const Total total = total_of(level);
-      EXPECT_NEAR(total.weight / (150 * 90), 1, 3e-5) << block;
-      EXPECT_LT((total.mean - expected.mean).norm() / expected.weight, 1e-5) << block;
-      EXPECT_LT((total.second - expected.second).norm() / expected.second.norm(), 1e-4) << block;
+  for (const bool compact : {false, true}) {
+    const double slack = compact ? 50 : 1, reach = 0.3;  // of the normals
+    const double mean_slack = 1e-5 + (compact ? reach / (2 * MICA_RECORD_ONE_8) : 0);
+    for (const double cell : {0.01, 0.05, 0.3}) {
+      for (const int finest : {16, 24}) {
+        for (const auto& [block, level] : levels(surface, cell, finest, compact)) {
+          const Total total = total_of(level);
+          EXPECT_NEAR(total.weight / (150 * 90), 1, 3e-5 * slack) << (compact ? "compact, " : "") << block;
+          EXPECT_LT((total.mean - expected.mean).norm() / expected.weight, mean_slack)
+              << (compact ? "compact, " : "") << block;
+          EXPECT_LT((total.second - expected.second).norm() / expected.second.norm(), 1e-4 * slack)
+              << (compact ? "compact, " : "") << block;
+        }
+      }
     }
   }
 }
@@ -132,14 +150,54 @@ TEST(MomentPyramid, KeepsFlakesApart) {
   ASSERT_EQ(level.elements, 2u);
   const std::int16_t* record = level.records.data();
   const double unit = word<float>(record, MICA_RECORD_WEIGHT_UNIT);
-  EXPECT_NEAR(unit * record[MICA_RECORD_FIELDS] + unit * record[MICA_RECORD_FIELDS + 1], 256, 1e-2);
-  EXPECT_NEAR(std::abs(unit * record[MICA_RECORD_FIELDS] - unit * record[MICA_RECORD_FIELDS + 1]), 128, 1e-2);
+  const double first = unit * field_of(record, 16, MICA_ELEMENT_WEIGHT, 0),
+               second = unit * field_of(record, 16, MICA_ELEMENT_WEIGHT, 1);
+  EXPECT_NEAR(first + second, 256, 1e-2);
+  EXPECT_NEAR(std::abs(first - second), 128, 1e-2);
 }
 
-TEST(MomentPyramid, EstimatesItsBytes) {
+/// Three cells in a row, the middle one's neighbour on the left nearer; a light one that has no neighbour.
+TEST(MomentPyramid, AddsLightCellsToTheirNearestNeighbour) {
+  const NormalCells cells(Surface(2, 1, Interpolation::nearest, {{-0.5, -0.5}, {0.5, 0.5}}), 0.1);
+  const auto part = [&](double weight, double s, double t) {
+    CellMoments moments;
+    moments.cell = cells.cell_of(s, t);
+    moments.moments.add(weight, Eigen::Vector4d(1, 2, s, t), Eigen::Matrix4d::Zero());
+    return moments;
+  };
+  const std::vector<CellMoments> parts = {part(10, -0.05, -0.45), part(0.1, 0.01, -0.45),
+                                          part(10, 0.15, -0.45), part(0.1, 0.45, 0.45)};
+  const std::vector<CellMoments> kept = without_light_cells(cells, parts);
+  ASSERT_EQ(kept.size(), 3u);
+  EXPECT_EQ(kept[0].cell, parts[0].cell);
+  EXPECT_NEAR(kept[0].moments.weight, 10.1, 1e-12);
+  EXPECT_NEAR(kept[0].moments.mean()[2], (10 * -0.05 + 0.1 * 0.01) / 10.1, 1e-12);
+  EXPECT_EQ(kept[1].moments.weight, 10);
+  EXPECT_EQ(kept[2].moments.weight, 0.1);
+}
+
+TEST(MomentPyramid, EstimatesItsElements) {
   const Surface surface = noise(512, 512);
-  const double actual = static_cast<double>(levels(surface, 0.03, 32).at(32).bytes());
-  EXPECT_NEAR(static_cast<double>(estimate_level_bytes(surface, 0.03, 32)) / actual, 1, 0.25);
+  const auto actual = static_cast<double>(levels(surface, 0.03, 32).at(32).elements);
+  EXPECT_NEAR(estimate_elements(surface, {0.03, 32}, 32) / actual, 1, 0.25);
+}
+
+/// The finest levels whose bytes fit, compact where others do not.
+TEST(MomentPyramid, TakesTheFinestLevelsThatFit) {
+  const Surface surface = noise(512, 512);
+  const auto bytes_of = [&](int finest, bool compact) {
+    std::size_t bytes = 0;
+    for (const auto& [block, level] : levels(surface, 0.03, finest, compact)) bytes += level.bytes();
+    return static_cast<double>(bytes);
+  };
+  constexpr double room = 1.2;  // for the estimate
+  for (const auto& [finest, compact] : {std::pair(16, false), {16, true}, {24, true}, {32, true}}) {
+    const PyramidLevels found =
+        levels_that_fit(surface, 0.03, static_cast<std::size_t>(room * bytes_of(finest, compact)));
+    EXPECT_EQ(found.finest_block, finest) << compact;
+    EXPECT_EQ(found.compact, compact) << finest;
+  }
+  EXPECT_EQ(levels_that_fit(surface, 0.03, 1).finest_block, 512);
 }
 
 }  // namespace

@@ -30,8 +30,9 @@ Query footprint(const Surface& surface, double u, double v, double major, double
 }
 
 /// One percent of the oracle, over the pixels on the disk; the others are 0.
-void expect_image(const Surface& surface, const Query& query, const ImageWindow& window, Way way) {
-  PyramidEvaluator pyramid(device(), surface);
+void expect_image(const Surface& surface, const Query& query, const ImageWindow& window, Way way,
+                  const PyramidSettings& settings = {}) {
+  PyramidEvaluator pyramid(device(), surface, settings);
   PyramidPainter painter(device(), surface, pyramid);
   EXPECT_EQ(painter.way(query), way);
   const std::vector<float> image = painter.paint({query}, window);
@@ -57,6 +58,14 @@ void expect_image(const Surface& surface, const Query& query, const ImageWindow&
 TEST(PyramidImages, KeepOnePercentWhereTheyAreDrawnFromALevel) {
   expect_image(spectrum(), footprint(spectrum(), 0.9, 0.2, 32, 20, 0.03), {{0, 0}, 1, 30}, Way::level);
   expect_image(flakes(), footprint(flakes(), 0.1, 0.7, 16, 16, 0.02), {{0, 0}, 1, 33}, Way::level);
+}
+TEST(PyramidImages, KeepOnePercentWhereTheyAreDrawnFromACompactLevel) {
+  PyramidSettings settings;
+  settings.levels_bytes = 400'000;
+  const Query query = footprint(spectrum(), 0.9, 0.2, 64, 50, 0.02);
+  PyramidEvaluator pyramid(device(), spectrum(), settings);
+  EXPECT_EQ(pyramid.level(*pyramid.choose(query)).shape().record_bits, 8);
+  expect_image(spectrum(), query, {{0, 0}, 1, 30}, Way::level, settings);
 }
 TEST(PyramidImages, KeepOnePercentWhereTheyAreDrawnFromTexels) {
   expect_image(spectrum(), footprint(spectrum(), 0.98, 0.5, 9, 6, 0.005), {{0.1, 0}, 0.2, 31}, Way::texels);

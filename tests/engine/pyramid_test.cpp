@@ -105,6 +105,43 @@ TEST(Pyramid, KeepsOnePercentOnABicubicMap) {
   expect_one_percent(surface, 0.02);
 }
 
+/// Memory in which only compact levels fit.
+PyramidSettings compact_settings(const Surface& surface, double roughness) {
+  PyramidSettings settings;
+  std::size_t bytes = std::size_t{1} << 24;
+  const double width = cell_width(cell_class_of(roughness), settings.precision);
+  while (!levels_that_fit(surface, width, bytes).compact) bytes -= bytes / 8;
+  settings.levels_bytes = bytes;
+  return settings;
+}
+
+void expect_one_percent_of_compact_levels(const Surface& surface, double roughness) {
+  PyramidEvaluator pyramid(device(), surface, compact_settings(surface, roughness));
+  const reference::Oracle oracle(surface, 1e-4);
+  for (const double sigma : {30.0, 5000.0}) {
+    const std::vector<Query> queries = random_queries(surface, sigma, sigma, roughness, 40);
+    const std::optional<PyramidChoice> choice = pyramid.choose(queries.front());
+    ASSERT_TRUE(choice);
+    EXPECT_EQ(pyramid.level(*choice).shape().record_bits, 8);
+    const double error = error_of(&pyramid, oracle, queries);
+    std::printf("roughness %g, footprint %g, compact: %.2f%%\n", roughness, sigma, 100 * error);
+    EXPECT_LE(error, 0.01) << "roughness " << roughness << ", footprint " << sigma;
+  }
+}
+
+TEST(Pyramid, KeepsOnePercentOfCompactLevels) {
+  expect_one_percent_of_compact_levels(spectrum(Interpolation::bilinear), 0.005);
+  expect_one_percent_of_compact_levels(spectrum(Interpolation::bilinear), 0.02);
+  expect_one_percent_of_compact_levels(oblong(), 0.02);
+}
+
+/// Flakes face everywhere: sixteen of a group are too far apart for 8 bits.
+TEST(Pyramid, HasNoCompactLevelsOfFewElements) {
+  const Surface surface = flakes();
+  for (std::size_t bytes = 1 << 24; bytes > 1000; bytes /= 2)
+    EXPECT_FALSE(levels_that_fit(surface, 0.0075, bytes).compact) << bytes;
+}
+
 /// The level is that of the minor axis.
 TEST(Pyramid, KeepsOnePercentOfLongFootprints) {
   const Surface surface = spectrum(Interpolation::bilinear);
