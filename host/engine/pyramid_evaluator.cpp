@@ -2,7 +2,6 @@
 
 #include <tbb/parallel_for.h>
 
-#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -23,16 +22,14 @@ constexpr double kNarrowestCell = 1.0 / 512;
 
 }  // namespace
 
-std::size_t pyramid_levels_bytes(int map_width, int map_height) {
-  constexpr std::size_t bytes_a_texel = 22, least = std::size_t{16} << 20;
-  return std::max(least, bytes_a_texel * map_width * map_height);
-}
-
 PyramidEvaluator::PyramidEvaluator(Device& device, const Surface& surface, const PyramidSettings& settings)
-    : device_(device),
-      surface_(surface),
-      settings_(settings),
-      wave_form_(settings.wave_form.value_or(device.wave_form())) {}
+    : device_(device), surface_(surface), settings_(settings), store_(settings.store) {
+  if (store_) return;
+  store_ = std::make_shared<PyramidStore>(
+      device, surface,
+      settings.levels_bytes.value_or(pyramid_levels_bytes(surface.width(), surface.height())),
+      settings.wave_form.value_or(device.wave_form()), settings.batch_queries);
+}
 
 /// Answers of several levels; a query's are added in the order of its levels, whatever it is sent with.
 class PyramidEvaluator::BlendedDensities : public PendingDensities {
@@ -127,11 +124,11 @@ PyramidEvaluator::Culling PyramidEvaluator::culling(const PyramidChoice& choice)
   const auto found = cullings_.find(choice);
   if (found != cullings_.end()) return found->second;
   constexpr double small_cutoff_error = 1e-6, share_of_error = 0.12;
+  PyramidLevelBatches& batches = level(choice);
   const Stopwatch watch;
   const std::vector<Query> queries = culling_sample(choice);
   std::vector<std::uint32_t> places(queries.size());
   std::iota(places.begin(), places.end(), 0u);
-  PyramidLevelBatches& batches = level(choice);
   const auto evaluate = [&](double cutoff) {
     return batches.start(level_queries(queries, places, choice, {cutoff, 1}))->wait();
   };
@@ -184,11 +181,7 @@ void PyramidEvaluator::add_levels(double roughness) {
   const int cell_class = cell_class_of(roughness);
   const double width = cell_width(cell_class, settings_.precision);
   if (width < kNarrowestCell || levels_of_class_.count(cell_class) != 0) return;
-  const Stopwatch watch;
-  const std::size_t bytes =
-      settings_.levels_bytes.value_or(pyramid_levels_bytes(surface_.width(), surface_.height()));
-  levels_of_class_[cell_class] = levels_that_fit(surface_, width, bytes);
-  build_seconds_ += watch.seconds();
+  levels_of_class_[cell_class] = store_->levels(width);
 }
 
 std::optional<PyramidShares> PyramidEvaluator::shares(const Query& query) const {
@@ -208,20 +201,8 @@ std::optional<PyramidChoice> PyramidEvaluator::choose(const Query& query) {
   return found ? std::optional(found->choice) : std::nullopt;
 }
 
-/// Coarser levels come with the one that is needed: together they take a third of it.
 PyramidLevelBatches& PyramidEvaluator::level(const PyramidChoice& choice) {
-  const PyramidChoice key{choice.cell_class, choice.block, false};
-  const auto found = levels_.find(key);
-  if (found != levels_.end()) return found->second;
-  const Stopwatch watch;
-  PyramidLevels built_levels = levels_of_class_.at(choice.cell_class);
-  built_levels.finest_block = choice.block;
-  build_moment_pyramid(surface_, built_levels, [&](int block, const PyramidLevel& built) {
-    levels_.try_emplace(PyramidChoice{choice.cell_class, block, false}, device_, built, wave_form_,
-                        settings_.batch_queries);
-  });
-  build_seconds_ += watch.seconds();
-  return levels_.at(key);
+  return store_->level(cell_width(choice.cell_class, settings_.precision), choice.block);
 }
 
 Evaluator* PyramidEvaluator::texels(bool counting) {
@@ -229,26 +210,23 @@ Evaluator* PyramidEvaluator::texels(bool counting) {
   if (texels) return texels.get();
   TriangleSettings settings;
   settings.batch_queries = settings_.batch_queries;
-  settings.wave_form = wave_form_;
+  settings.wave_form = wave_form();
   settings.count_flops = counting;
   texels = std::make_unique<TriangleEvaluator>(device_, surface_, settings);
   return texels.get();
 }
 
 std::size_t PyramidEvaluator::device_bytes() const {
-  std::size_t bytes = texels_ ? texels_->device_bytes() : 0;
-  for (const auto& [choice, level] : levels_) bytes += level.device_bytes();
-  return bytes;
+  return (texels_ ? texels_->device_bytes() : 0) + (settings_.store ? 0 : store_->device_bytes());
 }
 
 double PyramidEvaluator::build_seconds() const {
-  return build_seconds_ + (texels_ ? texels_->build_seconds() : 0);
+  return build_seconds_ + (texels_ ? texels_->build_seconds() : 0) +
+         (settings_.store ? 0 : store_->build_seconds());
 }
 
 double PyramidEvaluator::device_seconds() const {
-  double seconds = texels_ ? texels_->device_seconds() : 0;
-  for (const auto& [choice, level] : levels_) seconds += level.device_seconds();
-  return seconds;
+  return (texels_ ? texels_->device_seconds() : 0) + (settings_.store ? 0 : store_->device_seconds());
 }
 
 }  // namespace mica

@@ -7,8 +7,8 @@
 
 #include "host/device/device.h"
 #include "host/engine/evaluator.h"
-#include "host/engine/pyramid_level_batches.h"
 #include "host/engine/pyramid_query.h"
+#include "host/engine/pyramid_store.h"
 #include "host/surface/surface.h"
 
 namespace mica {
@@ -18,11 +18,8 @@ struct PyramidSettings {
   std::optional<std::size_t> levels_bytes;  ///< of a roughness's levels; default: pyramid_levels_bytes
   std::size_t batch_queries = 1 << 17;      ///< queries a launch, at most
   std::optional<WaveForm> wave_form;        ///< default: what suits the device
+  std::shared_ptr<PyramidStore> store;      ///< of levels, for several evaluators; default: its own
 };
-
-/// What the levels of one class of roughnesses may take; finer ones are not built. With the texels of a
-/// 2048^2 map that is 126 MiB.
-std::size_t pyramid_levels_bytes(int map_width, int map_height);
 
 /// `pyramid`: merged elements, whose number does not grow with the footprint; kernels/pyramid.cl. Levels are
 /// built when the first query needs them. Footprints that are too small for the finest level go to the texels
@@ -36,6 +33,7 @@ class PyramidEvaluator : public Evaluator {
     return start(queries, false);
   }
   std::string name() const override { return "pyramid"; }
+  /// Without a store that was given.
   std::size_t device_bytes() const override;
   double build_seconds() const override;
   double device_seconds() const override;
@@ -52,7 +50,7 @@ class PyramidEvaluator : public Evaluator {
   PyramidLevelBatches& level(const PyramidChoice& choice);
 
   const PyramidSettings& settings() const { return settings_; }
-  WaveForm wave_form() const { return wave_form_; }
+  WaveForm wave_form() const { return store_->wave_form(); }
 
  private:
   /// Queries that one level answers, and what its answers count.
@@ -87,10 +85,9 @@ class PyramidEvaluator : public Evaluator {
   Device& device_;
   const Surface& surface_;
   PyramidSettings settings_;
-  WaveForm wave_form_;
+  std::shared_ptr<PyramidStore> store_;
   double build_seconds_ = 0;
   std::map<int, PyramidLevels> levels_of_class_;
-  std::map<PyramidChoice, PyramidLevelBatches> levels_;
   std::map<PyramidChoice, Culling> cullings_;
   std::unique_ptr<Evaluator> texels_, counting_texels_;
 };
