@@ -1,10 +1,12 @@
 #include "host/engine/auto_evaluator.h"
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numeric>
 #include <optional>
@@ -263,13 +265,20 @@ Evaluator* AutoEvaluator::evaluator(Candidate* candidate) {
 }
 
 std::unique_ptr<PendingDensities> AutoEvaluator::start(const std::vector<Query>& queries) {
-  std::map<std::size_t, std::vector<std::size_t>> places_of;  // by candidate
-  for (std::size_t n = 0; n < queries.size(); ++n) {
+  std::vector<std::size_t> candidates(queries.size());
+  tbb::parallel_for(std::size_t{0}, queries.size(), [&](std::size_t n) {
     const auto found = candidate_of_.find(class_of(queries[n], surface_.width(), surface_.height()));
-    places_of[found == candidate_of_.end() ? candidates_.size() - 1 : found->second].push_back(n);
-  }
+    candidates[n] = found == candidate_of_.end() ? candidates_.size() - 1 : found->second;
+  });
+  const bool alike =
+      std::adjacent_find(candidates.begin(), candidates.end(), std::not_equal_to<>()) == candidates.end();
+  if (alike && !queries.empty()) return evaluator(&candidates_[candidates.front()])->start(queries);
+  std::vector<std::vector<std::size_t>> places_of(candidates_.size());
+  for (std::size_t n = 0; n < queries.size(); ++n) places_of[candidates[n]].push_back(n);
   auto all = std::make_unique<CollectedDensities>(queries.size());
-  for (auto& [candidate, places] : places_of) {
+  for (std::size_t candidate = 0; candidate < candidates_.size(); ++candidate) {
+    std::vector<std::size_t>& places = places_of[candidate];
+    if (places.empty()) continue;
     std::vector<Query> some(places.size());
     for (std::size_t n = 0; n < places.size(); ++n) some[n] = queries[places[n]];
     all->add(evaluator(&candidates_[candidate])->start(some), std::move(places));
