@@ -1,80 +1,31 @@
 // `pyramid` and `auto` on 2048^2 maps: error, speed, memory and build over footprints of 1 to 4096 texels,
 // against the best fixed evaluator that keeps 1%, random footprints, in one run; and a zoom. Prints a table.
 // Errors are relative L2 against `triangles`, which keeps 1e-4 of the oracle.
-//   pyramid_bench [SURFACE... | FILE...] [--quick] [--errors | --costs]
-// --errors times nothing; --costs fits the cost model of `auto`.
+//   pyramid_bench [SURFACE... | FILE...] [--quick] [--errors]
+// --errors times nothing.
 
 #include <fmt/format.h>
 
-#include <Eigen/QR>
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <ctime>
-#include <functional>
 #include <map>
-#include <numeric>
 
+#include "bench/bench_maps.h"
 #include "host/base/error.h"
 #include "host/base/stopwatch.h"
 #include "host/bench/coherent.h"
 #include "host/engine/accuracy.h"
 #include "host/engine/auto_evaluator.h"
-#include "host/engine/cost_model.h"
 #include "host/engine/make_evaluator.h"
 #include "host/engine/mixture_evaluator.h"
 #include "host/engine/pyramid_evaluator.h"
 #include "host/engine/triangle_evaluator.h"
-#include "host/surface/random.h"
 
 namespace mica::bench {
 namespace {
 
 constexpr int kRepeats = 11;
 constexpr double kSecondsARepeat = 0.03;
-constexpr double kPi = 3.14159265358979323846;
-
-Surface make_named(const std::string& name) {
-  SurfaceDescription description;
-  description.name = name;
-  if (name == "spectrum") {
-    description.source = SpectrumSurface{};
-  } else if (name == "brushed") {
-    description.source = BrushedSurface{};
-  } else if (name == "flakes") {
-    description.source = FlakesSurface{};
-    description.interpolation = Interpolation::nearest;
-  } else if (name == "scratches") {
-    description.source = ScratchesSurface{};
-  } else {
-    MapFile file;
-    file.path = name;
-    file.invalid = TexelRepair::repair;
-    description.source = file;
-  }
-  return make_surface(description, nullptr);
-}
-
-/// Random footprints, each with a normal under it blurred by the roughness.
-std::vector<Query> random_queries(const Surface& surface, double sigma_texels, double roughness,
-                                  std::size_t count) {
-  std::vector<Query> queries(count);
-  for (std::size_t n = 0; n < count; ++n) {
-    const auto random = [&](std::uint64_t stream) { return synthesis::random_unit(7, stream, n); };
-    const auto disk = [&](std::uint64_t stream) {
-      const double radius = std::sqrt(-2 * std::log(1 - random(stream))),
-                   angle = 2 * kPi * random(stream + 1);
-      return Eigen::Vector2d(radius * std::cos(angle), radius * std::sin(angle));
-    };
-    queries[n].footprint = make_footprint(surface, {random(0), random(1)}, sigma_texels, sigma_texels, 0);
-    const Eigen::Vector2d place =
-        Eigen::Vector2d(random(0) * surface.width(), random(1) * surface.height()) + sigma_texels * disk(2);
-    const Eigen::Vector2d& normal = surface.texel(std::lround(place.x()), std::lround(place.y()));
-    queries[n].half_vector = (normal + roughness * disk(4)).cwiseMax(-1).cwiseMin(1);
-    queries[n].roughness = roughness;
-  }
-  return queries;
-}
 
 /// Queries a second: the median of the repeats after a warm-up, on as many queries as take about 0.03 s.
 double rate(Evaluator* evaluator, const std::vector<Query>& queries) {
@@ -109,109 +60,9 @@ std::size_t compared(double sigma) {
   return sigma > 128 ? 32 : sigma > 32 ? 128 : sigma > 8 ? 512 : 2048;
 }
 
-/// Nanoseconds of one core that a query takes.
-double core_nanoseconds(Evaluator* evaluator, const std::vector<Query>& queries) {
-  evaluator->evaluate(thinned(queries, 64));
-  std::vector<double> seconds;
-  for (int repeat = 0; repeat < kRepeats; ++repeat) {
-    const std::clock_t start = std::clock();
-    evaluator->evaluate(queries);
-    seconds.push_back(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
-  }
-  return 1e9 * timing_of(seconds).median_seconds / static_cast<double>(queries.size());
-}
-
-double mean(const std::vector<float>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
-
-/// Of an evaluator, what a row of queries took and what its cost model goes by.
-struct CostRow {
-  double nanoseconds, blocks, counts;
-};
-using CostRows = std::map<std::string, std::vector<CostRow>>;
-
-/// The model with the least squares of relative differences; what would be negative is left out.
-CostModel fit(const std::vector<CostRow>& rows) {
-  std::array<bool, 3> used = {true, true, true};
-  for (;;) {
-    Eigen::MatrixXd terms(rows.size(), 3);
-    for (std::size_t n = 0; n < rows.size(); ++n)
-      terms.row(static_cast<long>(n)) << used[0], used[1] * rows[n].blocks, used[2] * rows[n].counts;
-    for (std::size_t n = 0; n < rows.size(); ++n) terms.row(static_cast<long>(n)) /= rows[n].nanoseconds;
-    const Eigen::VectorXd found =
-        terms.completeOrthogonalDecomposition().solve(Eigen::VectorXd::Ones(terms.rows()));
-    const auto lowest =
-        static_cast<std::size_t>(std::min_element(found.data(), found.data() + 3) - found.data());
-    if (found[static_cast<long>(lowest)] >= 0) return {found[0], found[1], found[2]};
-    used[lowest] = false;
-  }
-}
-
-void print_fit(const std::string& evaluator, const std::vector<CostRow>& rows) {
-  const CostModel model = fit(rows);
-  double worst = 1, squares = 0;
-  for (const CostRow& row : rows) {
-    const double ratio = std::log(model.of(row.blocks, row.counts) / row.nanoseconds);
-    worst = std::max(worst, std::exp(std::abs(ratio)));
-    squares += ratio * ratio;
-  }
-  fmt::print("{:<12} {{{:.4g}, {:.3g}, {:.3g}}}, off by a factor of {:.2f} (RMS), {:.2f} at most\n",
-             evaluator, model.query, model.block, model.count, std::exp(std::sqrt(squares / rows.size())),
-             worst);
-}
-
-/// What queries cost and what their kernels count, of every evaluator that `auto` may choose.
-void measure_costs(Device& device, const std::string& name, double roughness, CostRows* rows) {
-  const Surface surface = make_named(name);
-  using Count = std::function<std::vector<float>(const std::vector<Query>&)>;
-  const auto measure = [&](const std::string& evaluator, const std::vector<double>& sigmas, bool blocks,
-                           Evaluator* timed, const Count& counts) {
-    for (const double sigma : sigmas) {
-      const std::size_t count = sigma > 8 ? 1 << 10 : 1 << 12;
-      const std::vector<Query> queries = random_queries(surface, sigma, roughness, count);
-      CostRow row{core_nanoseconds(timed, queries), 0, mean(counts(queries))};
-      if (blocks) row.blocks = blocks_reached(queries.front(), surface.width(), surface.height());
-      fmt::print("{:<10} {:>5} {:>4}  {:<12} {:>10.0f} ns {:>10.0f} counts\n", name, roughness, sigma,
-                 evaluator, row.nanoseconds, row.counts);
-      std::fflush(stdout);
-      (*rows)[evaluator].push_back(row);
-    }
-  };
-  const std::vector<double> small = {1, 2, 4, 8, 16, 32}, large = {32, 128, 512};
-  TriangleSettings triangles;
-  TriangleEvaluator timed_triangles(device, surface, triangles);
-  triangles.count_flops = true;
-  TriangleEvaluator counting_triangles(device, surface, triangles);
-  measure("triangles", small, true, &timed_triangles,
-          [&](const auto& queries) { return counting_triangles.evaluate(queries); });
-  for (const int elements : {1, 2, 4}) {
-    MixtureSettings mixture;
-    mixture.elements = elements;
-    GaussianEvaluator timed(device, surface, mixture);
-    mixture.count_elements = true;
-    GaussianEvaluator counting(device, surface, mixture);
-    measure(fmt::format("gaussians {}", elements), small, true, &timed,
-            [&](const auto& queries) { return counting.evaluate(queries); });
-  }
-  PyramidEvaluator pyramid(device, surface);
-  if (roughness >= 0.02)  // others cost alike, and their levels take long to build
-    measure("pyramid", large, false, &pyramid,
-            [&](const auto& queries) { return pyramid.count_elements(queries); });
-}
-
-void fit_costs(Device& device, const std::vector<std::string>& names) {
-  CostRows rows;
-  for (const std::string& name : names)
-    for (const double roughness : {0.02, 0.005}) measure_costs(device, name, roughness, &rows);
-  fmt::print("\nhost/engine/cost_model.cpp: ns of a query, a block, a count\n");
-  for (const auto& [evaluator, measured] : rows) print_fit(evaluator, measured);
-}
-
 struct Effort {
   bool quick = false;  ///< few footprints
   bool timed = true;
-  bool costs = false;  ///< nothing but these
 };
 
 struct Fixed {
@@ -377,10 +228,6 @@ int run(std::vector<std::string> names, const Effort& effort) {
   const Stopwatch watch;
   Device device(0);
   if (names.empty()) names = {"spectrum", "brushed", "flakes", "scratches"};
-  if (effort.costs) {
-    fit_costs(device, names);
-    return 0;
-  }
   fmt::print(
       "device {}; random footprints, wall clock, median of {}\n"
       "[Yan16]'s code and manifolds: as measured on another machine, of twice the peak\n\n",
@@ -410,7 +257,6 @@ int main(int argc, char** argv) {
     mica::bench::Effort effort;
     effort.quick = taken("--quick");
     effort.timed = !taken("--errors");
-    effort.costs = taken("--costs");
     return mica::bench::run(names, effort);
   } catch (const mica::Error& error) {
     fmt::print(stderr, "pyramid_bench: {}\n", error.what());

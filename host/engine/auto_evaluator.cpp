@@ -7,9 +7,6 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <limits>
-#include <numeric>
-#include <optional>
 
 #include "host/base/error.h"
 #include "host/engine/collected_densities.h"
@@ -17,6 +14,7 @@
 #include "host/engine/map_query.h"
 #include "host/engine/mixture_evaluator.h"
 #include "host/engine/pyramid_evaluator.h"
+#include "host/engine/sampled_error.h"
 #include "host/engine/triangle_evaluator.h"
 #include "host/surface/random.h"
 
@@ -29,29 +27,21 @@ constexpr double kTrianglesError = 1e-4;  // what `triangles` are off by, at mos
 enum class Method { pyramid, gaussians, triangles };
 
 /// A candidate is judged by the first so many of a class's samples, and by more only while these cannot tell.
-constexpr std::array<std::size_t, 3> kLooks = {64, 256, AutoEvaluator::kMostSamples};
-/// Of the bounds of each: so that all of them hold at 95%.
-constexpr double kConfidence = 1 - 0.05 / kLooks.size();
-/// Core nanoseconds that the expected densities of a class may take, where the first look does not.
-constexpr double kMostLooking = 2e9;
+constexpr std::array<std::size_t, 4> kLooks = {256, 1024, 4096, AutoEvaluator::kMostSamples};
+/// Of the normal distribution, at 1 - 0.05 / 4: so that the bounds of all looks hold at 95%.
+constexpr double kQuantile = 2.2414;
+/// Fewer do not tell a bound.
+constexpr std::size_t kFewestSamples = 16;
+/// Core nanoseconds that a class's expected densities may take, and the counting of its costs.
+constexpr double kMostLooking = 2e9, kMostCounting = 1e8;
 
-/// Upper bound, at kConfidence, of the relative L2 whose squares were sampled: the bootstrap's.
-double bootstrap_bound(const std::vector<double>& squares, const std::vector<double>& references) {
-  constexpr int resamples = 400;
-  const std::size_t count = squares.size();
-  std::vector<double> errors(resamples);
-  for (int k = 0; k < resamples; ++k) {
-    double square = 0, reference = 0;
-    for (std::size_t n = 0; n < count; ++n) {
-      const auto pick =
-          static_cast<std::size_t>(synthesis::random_unit(5, k, n) * static_cast<double>(count));
-      square += squares[pick];
-      reference += references[pick];
-    }
-    errors[k] = reference > 0 ? std::sqrt(square / reference) : 0;
-  }
-  std::sort(errors.begin(), errors.end());
-  return errors[static_cast<std::size_t>(kConfidence * resamples)];
+/// Evaluates up to the first `end` of the queries, from where `densities` end.
+void extend(Evaluator* evaluator, const std::vector<Query>& queries, std::size_t end,
+            std::vector<float>* densities) {
+  if (end <= densities->size()) return;
+  const auto at = [&](std::size_t n) { return queries.begin() + static_cast<std::ptrdiff_t>(n); };
+  const std::vector<float> more = evaluator->evaluate({at(densities->size()), at(end)});
+  densities->insert(densities->end(), more.begin(), more.end());
 }
 
 double typical_density(const std::vector<float>& densities) {
@@ -153,40 +143,32 @@ void AutoEvaluator::calibrate(const std::vector<Query>& sample) {
 }
 
 AutoChoice AutoEvaluator::choose(const QueryClass& kind, const std::vector<Query>& sample) {
-  constexpr std::size_t fewest_samples = 16;  // that a bound can be told from
   const std::size_t triangles = candidates_.size() - 1;
+  const auto affordable = [&](double budget, double cost, std::size_t fewest, std::size_t most) {
+    return std::min(std::clamp(static_cast<std::size_t>(budget / cost), fewest, most), sample.size());
+  };
   Samples samples{sample};
-  look_at(&samples, kLooks.front());
-  AutoChoice best{kind, candidates_[triangles].label, samples.expected.size(), 0, kTrianglesError};
-  best.typical_density = typical_density(samples.expected);
-  best.cost = cost(&candidates_[triangles], samples);
+  AutoChoice best{kind, candidates_[triangles].label, 0, 0, kTrianglesError};
+  best.cost = cost(&candidates_[triangles], sample, std::min<std::size_t>(2, sample.size()));
+  samples.counted = affordable(kMostCounting, best.cost, 2, 64);
+  best.cost = cost(&candidates_[triangles], sample, samples.counted);
+  samples.most = affordable(kMostLooking, best.cost, kFewestSamples, kLooks.back());
+  extend(evaluator(&candidates_[triangles]), sample, std::min(kFewestSamples, samples.most),
+         &samples.expected);
   candidate_of_[kind] = triangles;
-  if (sample.size() < fewest_samples) return best;
-  samples.most = static_cast<std::size_t>(kMostLooking / best.cost);
   for (const Method method : {Method::pyramid, Method::gaussians}) {
-    for (std::size_t n = 0; n < triangles; ++n) {
+    for (std::size_t n = 0; n < triangles && samples.most >= kFewestSamples; ++n) {
       if (candidates_[n].method != method) continue;
       AutoChoice choice{kind, candidates_[n].label};
       choice.cost = best.cost;  // which is the one to beat
       const Verdict verdict = judge(&candidates_[n], &samples, &choice);
-      if (verdict == Verdict::keeps) {
-        choice.typical_density = typical_density(samples.expected);
-        best = choice, candidate_of_[kind] = n;
-      }
+      if (verdict == Verdict::keeps) best = choice, candidate_of_[kind] = n;
       if (verdict != Verdict::breaks) break;  // the next ones of this method cost more
     }
   }
+  best.samples = best.samples == 0 ? samples.expected.size() : best.samples;
+  best.typical_density = typical_density(samples.expected);
   return best;
-}
-
-void AutoEvaluator::look_at(Samples* samples, std::size_t count) {
-  const std::size_t done = samples->expected.size(), end = std::min(count, samples->queries.size());
-  if (end <= done) return;
-  const auto first = samples->queries.begin();
-  const std::vector<float> more =
-      evaluator(&candidates_.back())
-          ->evaluate({first + static_cast<std::ptrdiff_t>(done), first + static_cast<std::ptrdiff_t>(end)});
-  samples->expected.insert(samples->expected.end(), more.begin(), more.end());
 }
 
 AutoEvaluator::Verdict AutoEvaluator::judge(Candidate* candidate, Samples* samples, AutoChoice* choice) {
@@ -194,47 +176,31 @@ AutoEvaluator::Verdict AutoEvaluator::judge(Candidate* candidate, Samples* sampl
   if (auto* pyramid = dynamic_cast<PyramidEvaluator*>(built);
       pyramid != nullptr && !pyramid->choose(samples->queries.front()))
     return Verdict::breaks;  // it would only pass them on to the texels
-  std::optional<double> cost_of_query;
+  const double cost_of_query = cost(candidate, samples->queries, samples->counted);
+  if (!(cost_of_query < choice->cost)) return Verdict::costs_more;
+  std::vector<float> densities;
   for (const std::size_t look : kLooks) {
-    if (look > kLooks.front() &&
-        (samples->expected.size() >= samples->queries.size() || look > samples->most))
-      break;
-    look_at(samples, look);
-    measure(built, *samples, std::min(look, samples->queries.size()), choice);
-    if (!(choice->relative_l2 <= tolerance_)) return Verdict::breaks;
-    if (!cost_of_query) cost_of_query = cost(candidate, *samples);
-    if (!(*cost_of_query < choice->cost)) return Verdict::costs_more;
-    if (choice->upper_bound > tolerance_) continue;
-    choice->cost = *cost_of_query;
-    return Verdict::keeps;
+    const std::size_t count = std::min(look, samples->most);
+    extend(evaluator(&candidates_.back()), samples->queries, count, &samples->expected);
+    extend(built, samples->queries, count, &densities);
+    const SampledError error = sampled_error(
+        densities,
+        {samples->expected.begin(), samples->expected.begin() + static_cast<std::ptrdiff_t>(count)},
+        kQuantile);
+    if (error.upper_bound + kTrianglesError <= tolerance_) {
+      choice->samples = count, choice->cost = cost_of_query;
+      choice->relative_l2 = error.relative_l2;
+      choice->upper_bound = error.upper_bound + kTrianglesError;  // and what triangles are off by
+      return Verdict::keeps;
+    }
+    if (error.lower_bound > tolerance_ || count == samples->most) break;
   }
   return Verdict::breaks;
 }
 
-void AutoEvaluator::measure(Evaluator* built, const Samples& samples, std::size_t count, AutoChoice* choice) {
-  const auto first = samples.queries.begin();
-  const std::vector<float> densities = built->evaluate({first, first + static_cast<std::ptrdiff_t>(count)});
-  std::vector<double> squares(count), references(count);
-  for (std::size_t n = 0; n < count; ++n) {
-    const double reference = samples.expected[n];
-    squares[n] = (densities[n] - reference) * (densities[n] - reference);
-    references[n] = reference * reference;
-  }
-  const double reference = std::accumulate(references.begin(), references.end(), 0.0);
-  choice->samples = count;
-  choice->relative_l2 = reference > 0
-                            ? std::sqrt(std::accumulate(squares.begin(), squares.end(), 0.0) / reference)
-                            : std::numeric_limits<double>::infinity();
-  choice->upper_bound =
-      bootstrap_bound(squares, references) + kTrianglesError;  // and what triangles are off by
-}
-
-/// Of the first samples; of triangles, which only have to be beaten, few.
-double AutoEvaluator::cost(Candidate* candidate, const Samples& samples) {
-  const std::size_t count = candidate->method == Method::triangles ? 16 : kLooks.front();
-  const auto first = samples.queries.begin();
-  const std::vector<Query> some(first,
-                                first + static_cast<std::ptrdiff_t>(std::min(count, samples.queries.size())));
+double AutoEvaluator::cost(Candidate* candidate, const std::vector<Query>& queries, std::size_t count) {
+  const auto first = queries.begin();
+  const std::vector<Query> some(first, first + static_cast<std::ptrdiff_t>(count));
   const CostModel model = candidate->method == Method::triangles   ? triangles_cost()
                           : candidate->method == Method::gaussians ? gaussians_cost(candidate->elements)
                                                                    : pyramid_cost();

@@ -33,10 +33,10 @@ struct AutoChoice {
   double cost = 0;             ///< ns of one core that a query is estimated to take
 };
 
-/// `auto`: for each class of a job's queries the cheapest evaluator that keeps a tolerance on a sample of
-/// them. Candidates are pyramids of several precisions, mixtures, and `triangles`, which keeps 1e-4 and is
-/// what they are compared with. What is cheapest is told by counting elements, not by a clock: the same
-/// queries get the same answers.
+/// `auto`: for each class of a job's queries the cheapest evaluator that keeps a tolerance, as a sample of
+/// them tells at 95% confidence. Candidates are pyramids of several precisions, mixtures, and `triangles`,
+/// which keeps 1e-4 and is what they are compared with. What is cheapest is told by counting elements, not by
+/// a clock: the same queries get the same answers.
 class AutoEvaluator : public Evaluator {
  public:
   /// @param tolerance relative L2 over a class's queries, kLeastTolerance or more. `device` and `surface`
@@ -44,10 +44,11 @@ class AutoEvaluator : public Evaluator {
   AutoEvaluator(Device& device, const Surface& surface, double tolerance);
   ~AutoEvaluator() override;
   static constexpr double kLeastTolerance = 5e-4;
-  static constexpr std::size_t kMostSamples = 1024;  ///< of a class, that calibration can use
+  static constexpr std::size_t kMostSamples = 16384;  ///< of a class, that calibration can use
 
-  /// Chooses for every class of the sample, whose queries stand in random order; the first 64 of a class are
-  /// used, and up to kMostSamples where these cannot tell. Queries of other classes go to `triangles`.
+  /// Chooses for every class of the sample, whose queries stand in random order; the first 256 of a class are
+  /// used, up to kMostSamples where these cannot tell, and fewer where they take long. Queries of other
+  /// classes go to `triangles`.
   void calibrate(const std::vector<Query>& sample);
   double tolerance() const { return tolerance_; }
   const std::vector<AutoChoice>& choices() const { return choices_; }
@@ -67,18 +68,17 @@ class AutoEvaluator : public Evaluator {
   /// Queries of a class in random order, and the densities of those looked at so far.
   struct Samples {
     const std::vector<Query>& queries;
+    std::size_t counted = 0;  ///< of them that costs are told from
+    std::size_t most = 0;     ///< that errors may be told from
     std::vector<float> expected = {};
-    std::size_t most = 0;  ///< of them that may be looked at
   };
   enum class Verdict { keeps, breaks, costs_more };
 
   AutoChoice choose(const QueryClass& kind, const std::vector<Query>& sample);
-  /// Makes `count` of the expected densities, at least.
-  void look_at(Samples* samples, std::size_t count);
   /// @param choice its cost is the one to beat, and then the candidate's; and its error.
   Verdict judge(Candidate* candidate, Samples* samples, AutoChoice* choice);
-  void measure(Evaluator* built, const Samples& samples, std::size_t count, AutoChoice* choice);
-  double cost(Candidate* candidate, const Samples& samples);
+  /// Nanoseconds of a core that a query takes, by the first `count`.
+  double cost(Candidate* candidate, const std::vector<Query>& queries, std::size_t count);
   Evaluator* evaluator(Candidate* candidate);
 
   Device& device_;

@@ -5,7 +5,7 @@
 namespace mica {
 
 /// Nanoseconds of one core, of a query, of one block of the map that its footprint reaches, and of one thing
-/// that its kernel counts. Measured on one machine: only their ratios matter. `pyramid_bench --costs` fits
+/// that its kernel counts. Measured on one machine: only their ratios matter. `auto_costs` fits
 /// them.
 struct CostModel {
   double query, block, count;
