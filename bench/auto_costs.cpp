@@ -47,6 +47,13 @@ struct CostRow {
   double nanoseconds, blocks, counts;
 };
 using CostRows = std::map<std::string, std::vector<CostRow>>;
+using Count = std::function<std::vector<float>(const std::vector<Query>&)>;
+
+struct BenchMap {
+  std::string name;
+  Surface surface;
+  double roughness;
+};
 
 /// The model with the least squares of relative differences; what would be negative is left out.
 CostModel fit(const std::vector<CostRow>& rows) {
@@ -73,54 +80,64 @@ void print_fit(const std::string& evaluator, const std::vector<CostRow>& rows) {
     worst = std::max(worst, std::exp(std::abs(ratio)));
     squares += ratio * ratio;
   }
-  fmt::print("{:<12} {{{:.4g}, {:.3g}, {:.3g}}}, off by a factor of {:.2f} (RMS), {:.2f} at most\n",
+  fmt::print("{:<20} {{{:.4g}, {:.3g}, {:.3g}}}, off by a factor of {:.2f} (RMS), {:.2f} at most\n",
              evaluator, model.query, model.block, model.count, std::exp(std::sqrt(squares / rows.size())),
              worst);
 }
 
-/// What queries cost and what their kernels count, of every evaluator that `auto` may choose.
-void measure_costs(Device& device, const std::string& name, double roughness, CostRows* rows) {
-  const Surface surface = make_named(name);
-  using Count = std::function<std::vector<float>(const std::vector<Query>&)>;
-  const auto measure = [&](const std::string& evaluator, const std::vector<double>& sigmas, bool blocks,
-                           Evaluator* timed, const Count& counts) {
-    for (const double sigma : sigmas) {
-      const std::size_t count = sigma > 8 ? 1 << 10 : 1 << 12;
-      const std::vector<Query> queries = random_queries(surface, sigma, roughness, count);
-      CostRow row{core_nanoseconds(timed, queries), 0, mean(counts(queries))};
-      if (blocks) row.blocks = blocks_reached(queries.front(), surface.width(), surface.height());
-      fmt::print("{:<10} {:>5} {:>4}  {:<12} {:>10.0f} ns {:>10.0f} counts\n", name, roughness, sigma,
-                 evaluator, row.nanoseconds, row.counts);
-      std::fflush(stdout);
-      (*rows)[evaluator].push_back(row);
-    }
-  };
-  const std::vector<double> small = {1, 2, 4, 8, 16, 32}, large = {32, 128, 512};
-  TriangleSettings triangles;
-  TriangleEvaluator timed_triangles(device, surface, triangles);
-  triangles.count_flops = true;
-  TriangleEvaluator counting_triangles(device, surface, triangles);
-  measure("triangles", small, true, &timed_triangles,
-          [&](const auto& queries) { return counting_triangles.evaluate(queries); });
-  for (const int elements : {1, 2, 4}) {
-    MixtureSettings mixture;
-    mixture.elements = elements;
-    GaussianEvaluator timed(device, surface, mixture);
-    mixture.count_elements = true;
-    GaussianEvaluator counting(device, surface, mixture);
-    measure(fmt::format("gaussians {}", elements), small, true, &timed,
-            [&](const auto& queries) { return counting.evaluate(queries); });
+/// Adds what queries of the footprints cost and what is counted of them.
+void measure(const BenchMap& map, const std::vector<double>& sigmas, Evaluator* timed, const Count& counts,
+             std::vector<CostRow>* rows) {
+  for (const double sigma : sigmas) {
+    const std::size_t count = sigma > 8 ? 1 << 10 : 1 << 12;
+    const std::vector<Query> queries = random_queries(map.surface, sigma, map.roughness, count);
+    CostRow row{core_nanoseconds(timed, queries), 0, mean(counts(queries))};
+    if (timed->name() != "pyramid")
+      row.blocks = blocks_reached(queries.front(), map.surface.width(), map.surface.height());
+    fmt::print("{:<10} {:>5} {:>4}  {:<12} {:>10.0f} ns {:>10.0f} counts\n", map.name, map.roughness, sigma,
+               timed->name(), row.nanoseconds, row.counts);
+    std::fflush(stdout);
+    rows->push_back(row);
   }
-  PyramidEvaluator pyramid(device, surface);
-  if (roughness >= 0.02)  // others cost alike, and their levels take long to build
-    measure("pyramid", large, false, &pyramid,
-            [&](const auto& queries) { return pyramid.count_elements(queries); });
+}
+
+/// Of every evaluator that `auto` may choose.
+void measure_all(Device& device, const BenchMap& map, CostRows* rows) {
+  const std::vector<double> small = {1, 2, 4, 8, 16, 32}, large = {32, 128, 512};
+  {
+    TriangleSettings settings;
+    TriangleEvaluator timed(device, map.surface, settings);
+    settings.count_flops = true;
+    TriangleEvaluator counting(device, map.surface, settings);
+    const bool nearest = map.surface.interpolation() == Interpolation::nearest;
+    measure(
+        map, small, &timed, [&](const auto& queries) { return counting.evaluate(queries); },
+        &(*rows)[nearest ? "triangles, nearest" : "triangles, bilinear"]);
+  }
+  MixtureSettings counted;
+  counted.elements = kCountedMixture;
+  counted.count_elements = true;
+  GaussianEvaluator counting(device, map.surface, counted);
+  for (const int elements : {1, 2, 4}) {
+    MixtureSettings settings;
+    settings.elements = elements;
+    GaussianEvaluator timed(device, map.surface, settings);
+    measure(
+        map, small, &timed, [&](const auto& queries) { return counting.evaluate(queries); },
+        &(*rows)[fmt::format("gaussians, {}", elements)]);
+  }
+  PyramidEvaluator pyramid(device, map.surface);
+  if (map.roughness >= 0.02)  // others cost alike, and their levels take long to build
+    measure(
+        map, large, &pyramid, [&](const auto& queries) { return pyramid.count_elements(queries); },
+        &(*rows)["pyramid"]);
 }
 
 void fit_costs(Device& device, const std::vector<std::string>& names) {
   CostRows rows;
   for (const std::string& name : names)
-    for (const double roughness : {0.02, 0.005}) measure_costs(device, name, roughness, &rows);
+    for (const double roughness : {0.02, 0.005})
+      measure_all(device, {name, make_named(name), roughness}, &rows);
   fmt::print("\nhost/engine/cost_model.cpp: ns of a query, a block, a count\n");
   for (const auto& [evaluator, measured] : rows) print_fit(evaluator, measured);
 }

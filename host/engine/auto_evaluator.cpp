@@ -26,6 +26,18 @@ constexpr double kTrianglesError = 1e-4;  // what `triangles` are off by, at mos
 
 enum class Method { pyramid, gaussians, triangles };
 
+/// Pyramids from the cheapest to the most precise, and the least relative L2 that was seen of each on maps
+/// like those of bench/pyramid_bench.cpp: for a tolerance below it, building its levels is not worth a try.
+struct PyramidCandidate {
+  PyramidPrecision precision;
+  double least_error;
+};
+const std::array<PyramidCandidate, 5> kPyramids = {{{{std::sqrt(2.0), 2, 5e-2}, 4e-3},
+                                                    {{std::sqrt(2.0), 1.5, 3e-2}, 2e-3},
+                                                    {{std::sqrt(0.5), 1.5, 1e-2}, 1e-3},
+                                                    {{std::sqrt(0.5), 1, 1e-3}, 1e-4},
+                                                    {{std::sqrt(0.125), 0.75, 1e-4}, 0}}};
+
 /// A candidate is judged by the first so many of a class's samples, and by more only while these cannot tell.
 constexpr std::array<std::size_t, 4> kLooks = {256, 1024, 4096, AutoEvaluator::kMostSamples};
 /// Of the normal distribution, at 1 - 0.05 / 4: so that the bounds of all looks hold at 95%.
@@ -57,18 +69,13 @@ struct AutoEvaluator::Candidate {
   int elements;
   PyramidPrecision precision;
   std::string label;
-  std::unique_ptr<Evaluator> built = {}, counter = {};
+  std::unique_ptr<Evaluator> built = {};
 
-  std::unique_ptr<Evaluator> make(Device& device, const Surface& surface, bool count) const {
-    if (method == Method::triangles) {
-      TriangleSettings settings;
-      settings.count_flops = count;
-      return std::make_unique<TriangleEvaluator>(device, surface, settings);
-    }
+  std::unique_ptr<Evaluator> make(Device& device, const Surface& surface) const {
+    if (method == Method::triangles) return std::make_unique<TriangleEvaluator>(device, surface);
     if (method == Method::gaussians) {
       MixtureSettings settings;
       settings.elements = elements;
-      settings.count_elements = count;
       return std::make_unique<GaussianEvaluator>(device, surface, settings);
     }
     PyramidSettings settings;
@@ -84,13 +91,11 @@ AutoEvaluator::AutoEvaluator(Device& device, const Surface& surface, double tole
         fmt::format("tolerance {}: auto keeps {} or more; for less use triangles (1e-4) or reference",
                     tolerance, kLeastTolerance));
   // Of each method from the cheapest to the most precise.
-  for (const PyramidPrecision& precision :
-       {PyramidPrecision{std::sqrt(2.0), 2, 5e-2}, PyramidPrecision{std::sqrt(2.0), 1.5, 3e-2},
-        PyramidPrecision{std::sqrt(0.5), 1.5, 1e-2}, PyramidPrecision{std::sqrt(0.5), 1, 1e-3},
-        PyramidPrecision{std::sqrt(0.125), 0.75, 1e-4}})
-    candidates_.push_back({Method::pyramid, 0, precision,
-                           fmt::format("pyramid, blocks of {:.2g} footprints, cells of {:.2g} roughnesses",
-                                       precision.block_ratio, precision.cell_ratio)});
+  for (const auto& [precision, least_error] : kPyramids)
+    if (tolerance > least_error)
+      candidates_.push_back({Method::pyramid, 0, precision,
+                             fmt::format("pyramid, blocks of {:.2g} footprints, cells of {:.2g} roughnesses",
+                                         precision.block_ratio, precision.cell_ratio)});
   if (surface.interpolation() != Interpolation::bicubic)
     for (const int elements : {1, 2, 4})
       candidates_.push_back(
@@ -134,8 +139,8 @@ void AutoEvaluator::calibrate(const std::vector<Query>& sample) {
     by_class[class_of(query, surface_.width(), surface_.height())].push_back(query);
   for (const auto& [kind, queries] : by_class) choices_.push_back(choose(kind, queries));
   // What nothing uses is not kept.
+  flops_counter_.reset(), elements_counter_.reset();
   for (std::size_t n = 0; n < candidates_.size(); ++n) {
-    candidates_[n].counter.reset();
     const bool used = std::any_of(candidate_of_.begin(), candidate_of_.end(),
                                   [n](const auto& entry) { return entry.second == n; });
     if (!used) candidates_[n].built.reset();
@@ -172,12 +177,11 @@ AutoChoice AutoEvaluator::choose(const QueryClass& kind, const std::vector<Query
 }
 
 AutoEvaluator::Verdict AutoEvaluator::judge(Candidate* candidate, Samples* samples, AutoChoice* choice) {
-  Evaluator* const built = evaluator(candidate);
-  if (auto* pyramid = dynamic_cast<PyramidEvaluator*>(built);
-      pyramid != nullptr && !pyramid->choose(samples->queries.front()))
+  if (candidate->method == Method::pyramid && !pyramid(candidate)->choose(samples->queries.front()))
     return Verdict::breaks;  // it would only pass them on to the texels
   const double cost_of_query = cost(candidate, samples->queries, samples->counted);
   if (!(cost_of_query < choice->cost)) return Verdict::costs_more;
+  Evaluator* const built = evaluator(candidate);
   std::vector<float> densities;
   for (const std::size_t look : kLooks) {
     const std::size_t count = std::min(look, samples->most);
@@ -199,17 +203,28 @@ AutoEvaluator::Verdict AutoEvaluator::judge(Candidate* candidate, Samples* sampl
 }
 
 double AutoEvaluator::cost(Candidate* candidate, const std::vector<Query>& queries, std::size_t count) {
-  const auto first = queries.begin();
-  const std::vector<Query> some(first, first + static_cast<std::ptrdiff_t>(count));
-  const CostModel model = candidate->method == Method::triangles   ? triangles_cost()
-                          : candidate->method == Method::gaussians ? gaussians_cost(candidate->elements)
-                                                                   : pyramid_cost();
+  const std::vector<Query> some(queries.begin(), queries.begin() + static_cast<std::ptrdiff_t>(count));
+  CostModel model = pyramid_cost();
   std::vector<float> counts;
-  if (auto* pyramid = dynamic_cast<PyramidEvaluator*>(evaluator(candidate)); pyramid != nullptr) {
-    counts = pyramid->count_elements(some);
+  if (candidate->method == Method::pyramid) {
+    counts = pyramid(candidate)->count_elements(some);
+  } else if (candidate->method == Method::gaussians) {
+    model = gaussians_cost(candidate->elements);
+    if (!elements_counter_) {
+      MixtureSettings settings;
+      settings.elements = kCountedMixture;
+      settings.count_elements = true;
+      elements_counter_ = std::make_unique<GaussianEvaluator>(device_, surface_, settings);
+    }
+    counts = elements_counter_->evaluate(some);
   } else {
-    if (!candidate->counter) candidate->counter = candidate->make(device_, surface_, true);
-    counts = candidate->counter->evaluate(some);
+    model = triangles_cost(surface_.interpolation());
+    if (!flops_counter_) {
+      TriangleSettings settings;
+      settings.count_flops = true;
+      flops_counter_ = std::make_unique<TriangleEvaluator>(device_, surface_, settings);
+    }
+    counts = flops_counter_->evaluate(some);
   }
   double sum = 0;
   for (std::size_t n = 0; n < some.size(); ++n)
@@ -226,8 +241,12 @@ double AutoEvaluator::error_estimate(const Query& query, double density) const {
 }
 
 Evaluator* AutoEvaluator::evaluator(Candidate* candidate) {
-  if (!candidate->built) candidate->built = candidate->make(device_, surface_, false);
+  if (!candidate->built) candidate->built = candidate->make(device_, surface_);
   return candidate->built.get();
+}
+
+PyramidEvaluator* AutoEvaluator::pyramid(Candidate* candidate) {
+  return static_cast<PyramidEvaluator*>(evaluator(candidate));
 }
 
 std::unique_ptr<PendingDensities> AutoEvaluator::start(const std::vector<Query>& queries) {

@@ -12,6 +12,8 @@
 
 namespace mica {
 
+class PyramidEvaluator;
+
 /// Queries that are alike: footprints of one octave, roughnesses of half an octave.
 struct QueryClass {
   int size = 0;       ///< floor of log2 of sqrt(2) times the smaller standard deviation in texels
@@ -80,11 +82,13 @@ class AutoEvaluator : public Evaluator {
   /// Nanoseconds of a core that a query takes, by the first `count`.
   double cost(Candidate* candidate, const std::vector<Query>& queries, std::size_t count);
   Evaluator* evaluator(Candidate* candidate);
+  PyramidEvaluator* pyramid(Candidate* candidate);  ///< the same, of one that is a pyramid
 
   Device& device_;
   const Surface& surface_;
   double tolerance_;
   std::vector<Candidate> candidates_;
+  std::unique_ptr<Evaluator> flops_counter_, elements_counter_;  // while it calibrates
   std::map<QueryClass, std::size_t> candidate_of_;
   std::vector<AutoChoice> choices_;
 };
