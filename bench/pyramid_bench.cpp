@@ -1,6 +1,7 @@
 // `pyramid` and `auto` on 2048^2 maps: error, speed, memory and build over footprints of 1 to 4096 texels,
 // against the best fixed evaluator that keeps 1%, random footprints, in one run; and a zoom. Prints a table.
-// Errors are relative L2 against `triangles`, which keeps 1e-4 of the oracle.
+// Errors are relative L2 against `triangles`, which keeps 1e-4 of the oracle, of as many queries as are
+// affordable, with their standard deviation in brackets.
 //   pyramid_bench [SURFACE... | FILE...] [--quick] [--errors]
 // --errors times nothing.
 
@@ -19,6 +20,7 @@
 #include "host/engine/make_evaluator.h"
 #include "host/engine/mixture_evaluator.h"
 #include "host/engine/pyramid_evaluator.h"
+#include "host/engine/sampled_error.h"
 #include "host/engine/triangle_evaluator.h"
 
 namespace mica::bench {
@@ -27,17 +29,20 @@ namespace {
 constexpr int kRepeats = 11;
 constexpr double kSecondsARepeat = 0.03;
 
-/// Queries a second: the median of the repeats after a warm-up, on as many queries as take about 0.03 s.
+/// Queries a second: the median of the repeats after a warm-up, on as many queries as take about 0.03 s; of
+/// three repeats where four queries take ten times as long.
 double rate(Evaluator* evaluator, const std::vector<Query>& queries) {
   std::size_t count = 4;
+  double once = 0;
   for (; count < queries.size(); count = std::min(4 * count, queries.size())) {
     const Stopwatch watch;
     evaluator->evaluate({queries.begin(), queries.begin() + static_cast<long>(count)});
-    if (watch.seconds() > kSecondsARepeat) break;
+    once = watch.seconds();
+    if (once > kSecondsARepeat) break;
   }
   const std::vector<Query> batch(queries.begin(), queries.begin() + static_cast<long>(count));
   std::vector<double> seconds;
-  for (int repeat = 0; repeat < kRepeats; ++repeat) {
+  for (int repeat = 0; repeat < (once > 10 * kSecondsARepeat ? 3 : kRepeats); ++repeat) {
     const Stopwatch watch;
     evaluator->evaluate(batch);
     seconds.push_back(watch.seconds());
@@ -45,19 +50,31 @@ double rate(Evaluator* evaluator, const std::vector<Query>& queries) {
   return static_cast<double>(count) / timing_of(seconds).median_seconds;
 }
 
-double error_of(Evaluator* evaluator, const std::vector<Query>& queries, const std::vector<float>& expected) {
-  const std::vector<float> densities = evaluator->evaluate(queries);
-  double squares = 0, references = 0;
-  for (std::size_t n = 0; n < queries.size(); ++n) {
-    squares += std::pow(densities[n] - expected[n], 2);
-    references += std::pow(expected[n], 2);
-  }
-  return std::sqrt(squares / references);
+SampledError error_of(Evaluator* evaluator, const std::vector<Query>& queries,
+                      const std::vector<float>& expected) {
+  return sampled_error(evaluator->evaluate(queries), expected, 1);
 }
 
-/// Queries that errors are told from: triangles take seconds for a few wide footprints.
-std::size_t compared(double sigma) {
-  return sigma > 128 ? 32 : sigma > 32 ? 128 : sigma > 8 ? 512 : 2048;
+/// In percent, with its standard deviation.
+std::string in_percent(const SampledError& error) {
+  return fmt::format("{:.3f}({:.3f})%", 100 * error.relative_l2, 100 * error.deviation);
+}
+
+/// Queries that errors are told from, and what `triangles` make of them: as many as take about 3 s, 16 at
+/// least.
+struct Compared {
+  std::vector<Query> queries;
+  std::vector<float> expected;
+};
+Compared compared(Evaluator* triangles, const std::vector<Query>& queries) {
+  constexpr double affordable_seconds = 3;
+  const Stopwatch watch;
+  triangles->evaluate(thinned(queries, queries.size() / 4));
+  const double count = std::clamp(4 * affordable_seconds / watch.seconds(), 16.0, 16384.0);
+  Compared some;
+  some.queries = thinned(queries, queries.size() / static_cast<std::size_t>(count));
+  some.expected = triangles->evaluate(some.queries);
+  return some;
 }
 
 struct Effort {
@@ -79,8 +96,7 @@ class Bench {
  private:
   void measure(double sigma);
   /// The fastest of the evaluators of texels that keep 1% here, and its rate.
-  std::pair<std::string, double> best_fixed(const std::vector<Query>& queries, const std::vector<Query>& few,
-                                            const std::vector<float>& expected);
+  std::pair<std::string, double> best_fixed(const std::vector<Query>& queries, const Compared& some);
   const std::string& choice_of(const Query& query) const;
   std::string of_public_code(double sigma, double rate) const;
 
@@ -110,7 +126,7 @@ Bench::Bench(Device& device, const std::string& name, double roughness, const Ef
   std::vector<Query> sample;
   for (const double sigma : sigmas) {
     queries_[sigma] = random_queries(surface_, sigma, roughness, 1 << 16);
-    const std::vector<Query> some = thinned(queries_[sigma], sigma > 32 ? 1024 : 64);
+    const std::vector<Query> some = thinned(queries_[sigma], (1 << 16) / AutoEvaluator::kMostSamples);
     sample.insert(sample.end(), some.begin(), some.end());
   }
   const Stopwatch watch;
@@ -137,29 +153,26 @@ void Bench::run() {
 
 void Bench::measure(double sigma) {
   const std::vector<Query>& queries = queries_[sigma];
-  const std::vector<Query> few = thinned(queries, queries.size() / compared(sigma));
-  const std::vector<float> expected = triangles_.evaluate(few);
-  const double pyramid_error = error_of(&pyramid_, few, expected),
-               auto_error = error_of(&auto_, few, expected), strict_error = error_of(&strict_, few, expected);
+  const Compared some = compared(&triangles_, queries);
+  const auto error = [&some](Evaluator* evaluator) {
+    return in_percent(error_of(evaluator, some.queries, some.expected));
+  };
   std::pair<std::string, double> fixed("-", 1);
   if (effort_.timed) {
     pyramid_rates_[sigma] = rate(&pyramid_, queries), auto_rates_[sigma] = rate(&auto_, queries);
-    fixed = best_fixed(queries, few, expected);
+    fixed = best_fixed(queries, some);
   }
-  fmt::print(
-      "{:<10} {:>5} {:>5}  {:>8.3f}% {:>10.0f}  {:>8.3f}% {:>10.0f} {:>7.2f}x  {:>8.4f}%  {:<12} {}{}\n",
-      name_, roughness_, sigma, 100 * pyramid_error, pyramid_rates_[sigma], 100 * auto_error,
-      auto_rates_[sigma], auto_rates_[sigma] / fixed.second, 100 * strict_error, fixed.first,
-      choice_of(queries.front()), of_public_code(sigma, auto_rates_[sigma]));
+  fmt::print("{:<10} {:>5} {:>5} {:>6}  {:>14} {:>10.0f}  {:>14} {:>10.0f} {:>7.2f}x  {:>14}  {:<12} {}{}\n",
+             name_, roughness_, sigma, some.queries.size(), error(&pyramid_), pyramid_rates_[sigma],
+             error(&auto_), auto_rates_[sigma], auto_rates_[sigma] / fixed.second, error(&strict_),
+             fixed.first, choice_of(queries.front()), of_public_code(sigma, auto_rates_[sigma]));
   std::fflush(stdout);
 }
 
-std::pair<std::string, double> Bench::best_fixed(const std::vector<Query>& queries,
-                                                 const std::vector<Query>& few,
-                                                 const std::vector<float>& expected) {
+std::pair<std::string, double> Bench::best_fixed(const std::vector<Query>& queries, const Compared& some) {
   std::pair<std::string, double> best("triangles", rate(&triangles_, queries));
   for (const Fixed& mixture : mixtures_) {
-    if (error_of(mixture.evaluator.get(), few, expected) > 0.01) continue;
+    if (error_of(mixture.evaluator.get(), some.queries, some.expected).relative_l2 > 0.01) continue;
     const double gaussians = rate(mixture.evaluator.get(), queries);
     if (gaussians > best.second) best = {mixture.name, gaussians};
     break;  // more elements are slower
@@ -208,7 +221,7 @@ void zoom(Device& device, const std::string& name, double roughness) {
     const std::vector<float> densities = pyramid.evaluate(queries);
     const auto choice = pyramid.choose(queries.front());
     const int block = choice ? choice->block + (choice->uniform ? 1 : 0) : 0;
-    if (frame > 0) changes[frame] = error_of(&pyramid, queries, last);
+    if (frame > 0) changes[frame] = sampled_error(densities, last, 1).relative_l2;
     level_changes[frame] = frame > 0 && block != last_block;
     last_block = block, last = densities;
   }
@@ -232,9 +245,9 @@ int run(std::vector<std::string> names, const Effort& effort) {
       "device {}; random footprints, wall clock, median of {}\n"
       "[Yan16]'s code and manifolds: as measured on another machine, of twice the peak\n\n",
       device.info().name, kRepeats);
-  fmt::print("{:<10} {:>5} {:>5}  {:>9} {:>10}  {:>9} {:>10} {:>8}  {:>9}  {:<12} {}\n", "surface", "rough",
-             "sigma", "pyramid", "queries/s", "auto 1%", "queries/s", "of best", "auto 0.1%", "best fixed",
-             "auto's choice");
+  fmt::print("{:<10} {:>5} {:>5} {:>6}  {:>14} {:>10}  {:>14} {:>10} {:>8}  {:>14}  {:<12} {}\n", "surface",
+             "rough", "sigma", "of", "pyramid", "queries/s", "auto 1%", "queries/s", "of best", "auto 0.1%",
+             "best fixed", "auto's choice");
   for (const std::string& name : names)
     for (const double roughness : {0.02, 0.005}) Bench(device, name, roughness, effort).run();
   for (const std::string& name : names) zoom(device, name, 0.02);
