@@ -1,5 +1,5 @@
 // Fits the cost model of `auto`: what queries of random footprints cost each evaluator, in nanoseconds of a
-// core, against what its kernel counts. Prints the rows and, for host/engine/cost_model.cpp, the fits.
+// core, against what is counted of them. Prints the rows and, for host/engine/cost_model.cpp, the fits.
 //   auto_costs [SURFACE... | FILE...]
 
 #include <fmt/format.h>
@@ -67,7 +67,7 @@ CostModel fit(const std::vector<CostRow>& rows) {
         terms.completeOrthogonalDecomposition().solve(Eigen::VectorXd::Ones(terms.rows()));
     const auto lowest =
         static_cast<std::size_t>(std::min_element(found.data(), found.data() + 3) - found.data());
-    if (found[static_cast<long>(lowest)] >= 0) return {found[0], found[1], found[2]};
+    if (found[static_cast<long>(lowest)] >= 0) return {found[0], found[1], found[2], 0};
     used[lowest] = false;
   }
 }

@@ -130,9 +130,9 @@ Bench::Bench(Device& device, const std::string& name, double roughness, const Ef
     sample.insert(sample.end(), some.begin(), some.end());
   }
   const Stopwatch watch;
-  auto_.calibrate(sample);
+  auto_.calibrate({sample});
   const double seconds = watch.seconds();
-  strict_.calibrate(sample);
+  strict_.calibrate({sample});
   fmt::print("{} {}: auto calibrated in {:.1f} s, for 0.1% in {:.1f} s\n", name, roughness, seconds,
              watch.seconds() - seconds);
   for (const int elements : {1, 2, 4})

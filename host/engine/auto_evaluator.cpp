@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <limits>
 
 #include "host/base/error.h"
 #include "host/engine/collected_densities.h"
@@ -82,6 +83,11 @@ struct AutoEvaluator::Candidate {
     settings.precision = precision;
     return std::make_unique<PyramidEvaluator>(device, surface, settings);
   }
+
+  CostModel cost_model(const Surface& surface) const {
+    if (method == Method::triangles) return triangles_cost(surface.interpolation());
+    return method == Method::gaussians ? gaussians_cost(elements) : pyramid_cost();
+  }
 };
 
 AutoEvaluator::AutoEvaluator(Device& device, const Surface& surface, double tolerance)
@@ -111,11 +117,14 @@ QueryClass class_of(const Query& query, int map_width, int map_height) {
           static_cast<int>(std::floor(2 * std::log2(query.roughness / kFirstRoughness) + slack))};
 }
 
-std::vector<Query> calibration_sample(std::size_t count, std::size_t each, int map_width, int map_height,
-                                      const std::function<Query(std::size_t)>& query) {
+CalibrationSample calibration_sample(std::size_t count, std::size_t each, int map_width, int map_height,
+                                     const std::function<Query(std::size_t)>& query, double scale) {
   std::map<QueryClass, std::vector<std::pair<double, std::size_t>>> kept;  // heaps, largest key first
+  CalibrationSample sample;
   for (std::size_t n = 0; n < count; ++n) {
-    auto& heap = kept[class_of(query(n), map_width, map_height)];
+    const QueryClass kind = class_of(query(n), map_width, map_height);
+    sample.counts[kind] += scale;
+    auto& heap = kept[kind];
     const std::pair<double, std::size_t> entry(synthesis::random_unit(9, 0, n), n);
     if (heap.size() == each) {
       if (!(entry < heap.front())) continue;
@@ -125,44 +134,48 @@ std::vector<Query> calibration_sample(std::size_t count, std::size_t each, int m
     heap.push_back(entry);
     std::push_heap(heap.begin(), heap.end());
   }
-  std::vector<Query> sample;
   for (auto& [kind, heap] : kept) {
     std::sort(heap.begin(), heap.end());
-    for (const auto& entry : heap) sample.push_back(query(entry.second));
+    for (const auto& entry : heap) sample.queries.push_back(query(entry.second));
   }
   return sample;
 }
 
-void AutoEvaluator::calibrate(const std::vector<Query>& sample) {
+void AutoEvaluator::calibrate(const CalibrationSample& sample) {
   std::map<QueryClass, std::vector<Query>> by_class;
-  for (const Query& query : sample)
+  for (const Query& query : sample.queries)
     by_class[class_of(query, surface_.width(), surface_.height())].push_back(query);
-  for (const auto& [kind, queries] : by_class) choices_.push_back(choose(kind, queries));
+  for (const auto& [kind, queries] : by_class) {
+    const auto count = sample.counts.find(kind);
+    const double many = std::numeric_limits<double>::infinity();
+    choices_.push_back(choose(kind, {queries, count == sample.counts.end() ? many : count->second}));
+  }
   // What nothing uses is not kept.
   flops_counter_.reset(), elements_counter_.reset();
-  for (std::size_t n = 0; n < candidates_.size(); ++n) {
-    const bool used = std::any_of(candidate_of_.begin(), candidate_of_.end(),
-                                  [n](const auto& entry) { return entry.second == n; });
-    if (!used) candidates_[n].built.reset();
-  }
+  for (Candidate& candidate : candidates_)
+    if (!is_chosen(candidate)) candidate.built.reset();
 }
 
-AutoChoice AutoEvaluator::choose(const QueryClass& kind, const std::vector<Query>& sample) {
-  const std::size_t triangles = candidates_.size() - 1;
+bool AutoEvaluator::is_chosen(const Candidate& candidate) const {
+  return std::any_of(candidate_of_.begin(), candidate_of_.end(),
+                     [&](const auto& entry) { return &candidates_[entry.second] == &candidate; });
+}
+
+AutoChoice AutoEvaluator::choose(const QueryClass& kind, Samples samples) {
+  Candidate* const triangles = &candidates_.back();
   const auto affordable = [&](double budget, double cost, std::size_t fewest, std::size_t most) {
-    return std::min(std::clamp(static_cast<std::size_t>(budget / cost), fewest, most), sample.size());
+    return std::min(std::clamp(static_cast<std::size_t>(budget / cost), fewest, most),
+                    samples.queries.size());
   };
-  Samples samples{sample};
-  AutoChoice best{kind, candidates_[triangles].label, 0, 0, kTrianglesError};
-  best.cost = cost(&candidates_[triangles], sample, std::min<std::size_t>(2, sample.size()));
+  AutoChoice best{kind, triangles->label, 0, 0, kTrianglesError};
+  best.cost = cost(triangles, samples.queries, std::min<std::size_t>(2, samples.queries.size()));
   samples.counted = affordable(kMostCounting, best.cost, 2, 64);
-  best.cost = cost(&candidates_[triangles], sample, samples.counted);
+  best.cost = cost(triangles, samples.queries, samples.counted);
   samples.most = affordable(kMostLooking, best.cost, kFewestSamples, kLooks.back());
-  extend(evaluator(&candidates_[triangles]), sample, std::min(kFewestSamples, samples.most),
-         &samples.expected);
-  candidate_of_[kind] = triangles;
+  extend(evaluator(triangles), samples.queries, std::min(kFewestSamples, samples.most), &samples.expected);
+  candidate_of_[kind] = candidates_.size() - 1;
   for (const Method method : {Method::pyramid, Method::gaussians}) {
-    for (std::size_t n = 0; n < triangles && samples.most >= kFewestSamples; ++n) {
+    for (std::size_t n = 0; n + 1 < candidates_.size() && samples.most >= kFewestSamples; ++n) {
       if (candidates_[n].method != method) continue;
       AutoChoice choice{kind, candidates_[n].label};
       choice.cost = best.cost;  // which is the one to beat
@@ -179,6 +192,9 @@ AutoChoice AutoEvaluator::choose(const QueryClass& kind, const std::vector<Query
 AutoEvaluator::Verdict AutoEvaluator::judge(Candidate* candidate, Samples* samples, AutoChoice* choice) {
   if (candidate->method == Method::pyramid && !pyramid(candidate)->choose(samples->queries.front()))
     return Verdict::breaks;  // it would only pass them on to the texels
+  const double texels = static_cast<double>(surface_.width()) * surface_.height();
+  if (!is_chosen(*candidate) && samples->of * choice->cost < texels * candidate->cost_model(surface_).texel)
+    return Verdict::costs_more;  // others have answered by the time that it is built
   const double cost_of_query = cost(candidate, samples->queries, samples->counted);
   if (!(cost_of_query < choice->cost)) return Verdict::costs_more;
   Evaluator* const built = evaluator(candidate);
@@ -204,12 +220,10 @@ AutoEvaluator::Verdict AutoEvaluator::judge(Candidate* candidate, Samples* sampl
 
 double AutoEvaluator::cost(Candidate* candidate, const std::vector<Query>& queries, std::size_t count) {
   const std::vector<Query> some(queries.begin(), queries.begin() + static_cast<std::ptrdiff_t>(count));
-  CostModel model = pyramid_cost();
   std::vector<float> counts;
   if (candidate->method == Method::pyramid) {
     counts = pyramid(candidate)->count_elements(some);
   } else if (candidate->method == Method::gaussians) {
-    model = gaussians_cost(candidate->elements);
     if (!elements_counter_) {
       MixtureSettings settings;
       settings.elements = kCountedMixture;
@@ -218,7 +232,6 @@ double AutoEvaluator::cost(Candidate* candidate, const std::vector<Query>& queri
     }
     counts = elements_counter_->evaluate(some);
   } else {
-    model = triangles_cost(surface_.interpolation());
     if (!flops_counter_) {
       TriangleSettings settings;
       settings.count_flops = true;
@@ -226,6 +239,7 @@ double AutoEvaluator::cost(Candidate* candidate, const std::vector<Query>& queri
     }
     counts = flops_counter_->evaluate(some);
   }
+  const CostModel model = candidate->cost_model(surface_);
   double sum = 0;
   for (std::size_t n = 0; n < some.size(); ++n)
     sum += model.of(blocks_reached(some[n], surface_.width(), surface_.height()), counts[n]);

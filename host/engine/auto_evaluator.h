@@ -24,6 +24,19 @@ struct QueryClass {
   }
 };
 
+QueryClass class_of(const Query& query, int map_width, int map_height);
+
+/// Queries of a job that calibration may look at.
+struct CalibrationSample {
+  std::vector<Query> queries;                ///< of every class in random order
+  std::map<QueryClass, double> counts = {};  ///< of all the job's queries; of other classes it has many
+};
+
+/// Up to `each` queries of every class among queries 0 to count - 1: those whose numbers hash lowest.
+/// @param scale how many queries of the job each of these stands for.
+CalibrationSample calibration_sample(std::size_t count, std::size_t each, int map_width, int map_height,
+                                     const std::function<Query(std::size_t)>& query, double scale = 1);
+
 /// What `auto` chose for a class, and why.
 struct AutoChoice {
   QueryClass kind;
@@ -50,8 +63,8 @@ class AutoEvaluator : public Evaluator {
 
   /// Chooses for every class of the sample, whose queries stand in random order; the first 256 of a class are
   /// used, up to kMostSamples where these cannot tell, and fewer where they take long. Queries of other
-  /// classes go to `triangles`.
-  void calibrate(const std::vector<Query>& sample);
+  /// classes go to `triangles`, and so do those of classes that are too small to repay a structure.
+  void calibrate(const CalibrationSample& sample);
   double tolerance() const { return tolerance_; }
   const std::vector<AutoChoice>& choices() const { return choices_; }
 
@@ -70,17 +83,19 @@ class AutoEvaluator : public Evaluator {
   /// Queries of a class in random order, and the densities of those looked at so far.
   struct Samples {
     const std::vector<Query>& queries;
+    double of = 0;            ///< queries of the class in the job
     std::size_t counted = 0;  ///< of them that costs are told from
     std::size_t most = 0;     ///< that errors may be told from
     std::vector<float> expected = {};
   };
   enum class Verdict { keeps, breaks, costs_more };
 
-  AutoChoice choose(const QueryClass& kind, const std::vector<Query>& sample);
+  AutoChoice choose(const QueryClass& kind, Samples samples);
   /// @param choice its cost is the one to beat, and then the candidate's; and its error.
   Verdict judge(Candidate* candidate, Samples* samples, AutoChoice* choice);
   /// Nanoseconds of a core that a query takes, by the first `count`.
   double cost(Candidate* candidate, const std::vector<Query>& queries, std::size_t count);
+  bool is_chosen(const Candidate& candidate) const;
   Evaluator* evaluator(Candidate* candidate);
   PyramidEvaluator* pyramid(Candidate* candidate);  ///< the same, of one that is a pyramid
 
@@ -92,11 +107,5 @@ class AutoEvaluator : public Evaluator {
   std::map<QueryClass, std::size_t> candidate_of_;
   std::vector<AutoChoice> choices_;
 };
-
-QueryClass class_of(const Query& query, int map_width, int map_height);
-
-/// Up to `each` queries of every class among queries 0 to count - 1: those whose numbers hash lowest.
-std::vector<Query> calibration_sample(std::size_t count, std::size_t each, int map_width, int map_height,
-                                      const std::function<Query(std::size_t)>& query);
 
 }  // namespace mica

@@ -13,16 +13,16 @@ double blocks_reached(const Query& query, int map_width, int map_height) {
 }
 
 CostModel gaussians_cost(int elements) {
-  if (elements == 1) return {366, 380, 0.88};
-  if (elements == 2) return {0, 909, 2.38};
-  return {0, 1140, 9.46};
+  if (elements == 1) return {366, 380, 0.88, 50};
+  if (elements == 2) return {0, 909, 2.38, 100};
+  return {0, 1140, 9.46, 300};
 }
 CostModel triangles_cost(Interpolation interpolation) {
-  if (interpolation == Interpolation::nearest) return {0, 723, 0.0163};
-  return {0, 930, 0.0185};
+  if (interpolation == Interpolation::nearest) return {0, 723, 0.0163, 20};
+  return {0, 930, 0.0185, 20};
 }
 CostModel pyramid_cost() {
-  return {628, 0, 1.16};
+  return {628, 0, 1.16, 300};
 }
 
 }  // namespace mica

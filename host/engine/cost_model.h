@@ -6,10 +6,10 @@
 namespace mica {
 
 /// Nanoseconds of one core, of a query, of one block of the map that its footprint reaches, and of one thing
-/// that its kernel counts. Measured on one machine: only their ratios matter. `auto_costs` fits
-/// them.
+/// that is counted of it; and of building the structure, of a texel of the map. Measured on one machine: only
+/// their ratios matter. `auto_costs` fits them.
 struct CostModel {
-  double query, block, count;
+  double query, block, count, texel;
 
   double of(double blocks, double counted) const { return query + block * blocks + count * counted; }
 };

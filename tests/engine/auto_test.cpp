@@ -42,8 +42,8 @@ std::vector<Query> mixed_queries(const Surface& surface, int count, std::uint64_
 std::unique_ptr<AutoEvaluator> calibrated(const Surface& surface, double tolerance,
                                           const std::vector<Query>& queries) {
   auto chooser = std::make_unique<AutoEvaluator>(device(), surface, tolerance);
-  chooser->calibrate(calibration_sample(queries.size(), 40, surface.width(), surface.height(),
-                                        [&](std::size_t n) { return queries[n]; }));
+  chooser->calibrate(calibration_sample(
+      queries.size(), 40, surface.width(), surface.height(), [&](std::size_t n) { return queries[n]; }, 1e4));
   return chooser;
 }
 
@@ -81,7 +81,7 @@ TEST(Auto, LooksAtMoreSamplesWhereFewCannotTell) {
   const std::vector<Query> few(queries.begin(), queries.begin() + 64);
   const auto choice_of = [&](double tolerance, const std::vector<Query>& sample) {
     AutoEvaluator chooser(device(), surface, tolerance);
-    chooser.calibrate(sample);
+    chooser.calibrate({sample});
     return chooser.choices().front();
   };
   const AutoChoice loose = choice_of(0.1, few);
@@ -92,6 +92,20 @@ TEST(Auto, LooksAtMoreSamplesWhereFewCannotTell) {
   EXPECT_EQ(told.evaluator, loose.evaluator);
   EXPECT_GT(told.samples, 64u);
   EXPECT_LE(told.upper_bound, tolerance);
+}
+
+/// A structure that takes longer to build than its queries take without it is not built.
+TEST(Auto, BuildsNothingThatFewQueriesCannotRepay) {
+  const Surface surface = spectrum();
+  const std::vector<Query> queries = mixed_queries(surface, 600, 10);
+  const auto choices_for = [&](double queries_of_a_class) {
+    AutoEvaluator chooser(device(), surface, 0.01);
+    chooser.calibrate(calibration_sample(
+        queries.size(), 100, 256, 256, [&](std::size_t n) { return queries[n]; }, queries_of_a_class / 200));
+    return chooser.choices();
+  };
+  for (const AutoChoice& choice : choices_for(1)) EXPECT_EQ(choice.evaluator, "triangles");
+  EXPECT_EQ(choices_for(1e7).back().evaluator.find("pyramid"), 0u);
 }
 
 TEST(Auto, AnswersAreTheSameInAnyBatch) {
@@ -139,7 +153,7 @@ TEST(Auto, EstimatesTheErrorOfEachQuery) {
 TEST(Auto, AnswersWhatItWasNotCalibratedForWithTriangles) {
   const Surface surface = spectrum();
   AutoEvaluator chooser(device(), surface, 0.01);
-  chooser.calibrate({});
+  chooser.calibrate(CalibrationSample{});
   const std::vector<Query> queries = mixed_queries(surface, 12, 12);
   std::vector<double> expected;
   for (const reference::OracleResult& result : reference::Oracle(surface, 1e-6).evaluate(queries))
@@ -156,11 +170,13 @@ TEST(Auto, RefusesToPromiseTooMuch) {
 TEST(Auto, SamplesEveryClass) {
   const Surface surface = spectrum();
   const std::vector<Query> queries = mixed_queries(surface, 300, 10);
-  const std::vector<Query> sample =
-      calibration_sample(queries.size(), 7, 256, 256, [&](std::size_t n) { return queries[n]; });
-  EXPECT_EQ(sample.size(), 21u);
+  const CalibrationSample sample = calibration_sample(
+      queries.size(), 7, 256, 256, [&](std::size_t n) { return queries[n]; }, 2.5);
+  EXPECT_EQ(sample.queries.size(), 21u);
+  ASSERT_EQ(sample.counts.size(), 3u);
+  for (const auto& [kind, count] : sample.counts) EXPECT_DOUBLE_EQ(count, 250) << kind.size;
   std::map<int, int> counts;
-  for (const Query& query : sample) ++counts[class_of(query, 256, 256).size];
+  for (const Query& query : sample.queries) ++counts[class_of(query, 256, 256).size];
   for (const auto& [size, count] : counts) EXPECT_EQ(count, 7) << size;
 }
 
