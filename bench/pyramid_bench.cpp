@@ -170,12 +170,12 @@ void Bench::measure(double sigma) {
 }
 
 std::pair<std::string, double> Bench::best_fixed(const std::vector<Query>& queries, const Compared& some) {
-  std::pair<std::string, double> best("triangles", rate(&triangles_, queries));
+  const std::pair<std::string, double> best("triangles", rate(&triangles_, queries));
   for (const Fixed& mixture : mixtures_) {
-    if (error_of(mixture.evaluator.get(), some.queries, some.expected).relative_l2 > 0.01) continue;
     const double gaussians = rate(mixture.evaluator.get(), queries);
-    if (gaussians > best.second) best = {mixture.name, gaussians};
-    break;  // more elements are slower
+    if (gaussians < best.second) break;  // more elements are slower
+    if (error_of(mixture.evaluator.get(), some.queries, some.expected).relative_l2 <= 0.01)
+      return {mixture.name, gaussians};
   }
   return best;
 }

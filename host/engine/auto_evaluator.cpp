@@ -45,8 +45,8 @@ constexpr std::array<std::size_t, 4> kLooks = {256, 1024, 4096, AutoEvaluator::k
 constexpr double kQuantile = 2.2414;
 /// Fewer do not tell a bound.
 constexpr std::size_t kFewestSamples = 16;
-/// Core nanoseconds that a class's expected densities may take, and the counting of its costs.
-constexpr double kMostLooking = 2e9, kMostCounting = 1e8;
+/// Seconds of a core that counting the costs of a class may take.
+constexpr double kCountingSeconds = 0.1;
 
 /// Evaluates up to the first `end` of the queries, from where `densities` end.
 void extend(Evaluator* evaluator, const std::vector<Query>& queries, std::size_t end,
@@ -90,8 +90,8 @@ struct AutoEvaluator::Candidate {
   }
 };
 
-AutoEvaluator::AutoEvaluator(Device& device, const Surface& surface, double tolerance)
-    : device_(device), surface_(surface), tolerance_(tolerance) {
+AutoEvaluator::AutoEvaluator(Device& device, const Surface& surface, double tolerance, double looking_seconds)
+    : device_(device), surface_(surface), tolerance_(tolerance), looking_seconds_(looking_seconds) {
   if (!(tolerance >= kLeastTolerance))
     throw UsageError(
         fmt::format("tolerance {}: auto keeps {} or more; for less use triangles (1e-4) or reference",
@@ -163,15 +163,15 @@ bool AutoEvaluator::is_chosen(const Candidate& candidate) const {
 
 AutoChoice AutoEvaluator::choose(const QueryClass& kind, Samples samples) {
   Candidate* const triangles = &candidates_.back();
-  const auto affordable = [&](double budget, double cost, std::size_t fewest, std::size_t most) {
-    return std::min(std::clamp(static_cast<std::size_t>(budget / cost), fewest, most),
-                    samples.queries.size());
-  };
   AutoChoice best{kind, triangles->label, 0, 0, kTrianglesError};
   best.cost = cost(triangles, samples.queries, std::min<std::size_t>(2, samples.queries.size()));
-  samples.counted = affordable(kMostCounting, best.cost, 2, 64);
+  const auto affordable = [&](double seconds, std::size_t fewest, std::size_t most) {
+    return std::min(std::clamp(static_cast<std::size_t>(1e9 * seconds / best.cost), fewest, most),
+                    samples.queries.size());
+  };
+  samples.counted = affordable(kCountingSeconds, 2, 64);
   best.cost = cost(triangles, samples.queries, samples.counted);
-  samples.most = affordable(kMostLooking, best.cost, kFewestSamples, kLooks.back());
+  samples.most = affordable(looking_seconds_, kFewestSamples, kLooks.back());
   extend(evaluator(triangles), samples.queries, std::min(kFewestSamples, samples.most), &samples.expected);
   candidate_of_[kind] = candidates_.size() - 1;
   for (const Method method : {Method::pyramid, Method::gaussians}) {

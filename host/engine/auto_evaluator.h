@@ -56,7 +56,8 @@ class AutoEvaluator : public Evaluator {
  public:
   /// @param tolerance relative L2 over a class's queries, kLeastTolerance or more. `device` and `surface`
   /// must outlive this. Throws UsageError for a smaller tolerance.
-  AutoEvaluator(Device& device, const Surface& surface, double tolerance);
+  /// @param looking_seconds of a core that the expected densities of a class may take, for more than 16.
+  AutoEvaluator(Device& device, const Surface& surface, double tolerance, double looking_seconds = 2);
   ~AutoEvaluator() override;
   static constexpr double kLeastTolerance = 5e-4;
   static constexpr std::size_t kMostSamples = 16384;  ///< of a class, that calibration can use
@@ -101,7 +102,7 @@ class AutoEvaluator : public Evaluator {
 
   Device& device_;
   const Surface& surface_;
-  double tolerance_;
+  double tolerance_, looking_seconds_;
   std::vector<Candidate> candidates_;
   std::unique_ptr<Evaluator> flops_counter_, elements_counter_;  // while it calibrates
   std::map<QueryClass, std::size_t> candidate_of_;
