@@ -170,7 +170,7 @@ AutoChoice AutoEvaluator::choose(const QueryClass& kind, Samples samples) {
                     samples.queries.size());
   };
   samples.counted = affordable(kCountingSeconds, 2, 64);
-  best.cost = cost(triangles, samples.queries, samples.counted);
+  if (samples.counted > 2) best.cost = cost(triangles, samples.queries, samples.counted);
   samples.most = affordable(looking_seconds_, kFewestSamples, kLooks.back());
   extend(evaluator(triangles), samples.queries, std::min(kFewestSamples, samples.most), &samples.expected);
   candidate_of_[kind] = candidates_.size() - 1;
@@ -192,9 +192,13 @@ AutoChoice AutoEvaluator::choose(const QueryClass& kind, Samples samples) {
 AutoEvaluator::Verdict AutoEvaluator::judge(Candidate* candidate, Samples* samples, AutoChoice* choice) {
   if (candidate->method == Method::pyramid && !pyramid(candidate)->choose(samples->queries.front()))
     return Verdict::breaks;  // it would only pass them on to the texels
-  const double texels = static_cast<double>(surface_.width()) * surface_.height();
-  if (!is_chosen(*candidate) && samples->of * choice->cost < texels * candidate->cost_model(surface_).texel)
+  const CostModel model = candidate->cost_model(surface_);
+  const int width = surface_.width(), height = surface_.height();
+  const double build = model.texel * static_cast<double>(width) * height;
+  if (!is_chosen(*candidate) && samples->in_job * choice->cost < build)
     return Verdict::costs_more;  // others have answered by the time that it is built
+  if (!(model.of(blocks_reached(samples->queries.front(), width, height), 0) < choice->cost))
+    return Verdict::costs_more;  // whatever would be counted
   const double cost_of_query = cost(candidate, samples->queries, samples->counted);
   if (!(cost_of_query < choice->cost)) return Verdict::costs_more;
   Evaluator* const built = evaluator(candidate);

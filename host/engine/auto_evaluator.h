@@ -84,7 +84,7 @@ class AutoEvaluator : public Evaluator {
   /// Queries of a class in random order, and the densities of those looked at so far.
   struct Samples {
     const std::vector<Query>& queries;
-    double of = 0;            ///< queries of the class in the job
+    double in_job = 0;        ///< queries of the class that the job has
     std::size_t counted = 0;  ///< of them that costs are told from
     std::size_t most = 0;     ///< that errors may be told from
     std::vector<float> expected = {};
