@@ -39,12 +39,13 @@ const std::array<PyramidCandidate, 5> kPyramids = {{{{std::sqrt(2.0), 2, 5e-2}, 
                                                     {{std::sqrt(0.5), 1, 1e-3}, 1e-4},
                                                     {{std::sqrt(0.125), 0.75, 1e-4}, 0}}};
 
-/// A candidate is judged by the first so many of a class's samples, and by more only while these cannot tell.
-constexpr std::array<std::size_t, 4> kLooks = {256, 1024, 4096, AutoEvaluator::kMostSamples};
-/// Of the normal distribution, at 1 - 0.05 / 4: so that the bounds of all looks hold at 95%.
-constexpr double kQuantile = 2.2414;
 /// Fewer do not tell a bound.
 constexpr std::size_t kFewestSamples = 16;
+/// A candidate is judged by the first so many of a class's samples, and by more only while these cannot tell;
+/// by the fewest only whether it breaks the tolerance, where there are more.
+constexpr std::array<std::size_t, 5> kLooks = {kFewestSamples, 256, 1024, 4096, AutoEvaluator::kMostSamples};
+/// Of the normal distribution, at 1 - 0.05 / 4: so that the bounds of all looks hold at 95%.
+constexpr double kQuantile = 2.2414;
 /// Seconds of a core that counting the costs of a class may take.
 constexpr double kCountingSeconds = 0.1;
 
@@ -211,13 +212,14 @@ AutoEvaluator::Verdict AutoEvaluator::judge(Candidate* candidate, Samples* sampl
         densities,
         {samples->expected.begin(), samples->expected.begin() + static_cast<std::ptrdiff_t>(count)},
         kQuantile);
-    if (error.upper_bound + kTrianglesError <= tolerance_) {
+    const bool last = count == samples->most;
+    if ((look > kFewestSamples || last) && error.upper_bound + kTrianglesError <= tolerance_) {
       choice->samples = count, choice->cost = cost_of_query;
       choice->relative_l2 = error.relative_l2;
       choice->upper_bound = error.upper_bound + kTrianglesError;  // and what triangles are off by
       return Verdict::keeps;
     }
-    if (error.lower_bound > tolerance_ || count == samples->most) break;
+    if (error.lower_bound > tolerance_ || last) break;
   }
   return Verdict::breaks;
 }
