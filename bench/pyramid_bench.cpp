@@ -1,92 +1,48 @@
 // `pyramid` and `auto` on 2048^2 maps: error, speed, memory and build over footprints of 1 to 4096 texels,
 // against the best fixed evaluator that keeps 1%, random footprints, in one run; and a zoom. Prints a table.
-// Errors are relative L2 against `triangles`, which keeps 1e-4 of the oracle.
-//   pyramid_bench [SURFACE... | FILE...] [--quick] [--errors | --costs]
-// --errors times nothing; --costs fits the cost model of `auto`.
+// Errors are relative L2 against `triangles`, which keeps 1e-4 of the oracle, of as many queries as are
+// affordable, with their standard deviation in brackets.
+//   pyramid_bench [SURFACE... | FILE...] [--quick] [--errors]
+// --errors times nothing.
 
 #include <fmt/format.h>
 
-#include <Eigen/QR>
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <ctime>
-#include <functional>
 #include <map>
-#include <numeric>
 
+#include "bench/bench_maps.h"
 #include "host/base/error.h"
 #include "host/base/stopwatch.h"
 #include "host/bench/coherent.h"
 #include "host/engine/accuracy.h"
 #include "host/engine/auto_evaluator.h"
-#include "host/engine/cost_model.h"
 #include "host/engine/make_evaluator.h"
 #include "host/engine/mixture_evaluator.h"
 #include "host/engine/pyramid_evaluator.h"
+#include "host/engine/sampled_error.h"
 #include "host/engine/triangle_evaluator.h"
-#include "host/surface/random.h"
 
 namespace mica::bench {
 namespace {
 
 constexpr int kRepeats = 11;
 constexpr double kSecondsARepeat = 0.03;
-constexpr double kPi = 3.14159265358979323846;
 
-Surface make_named(const std::string& name) {
-  SurfaceDescription description;
-  description.name = name;
-  if (name == "spectrum") {
-    description.source = SpectrumSurface{};
-  } else if (name == "brushed") {
-    description.source = BrushedSurface{};
-  } else if (name == "flakes") {
-    description.source = FlakesSurface{};
-    description.interpolation = Interpolation::nearest;
-  } else if (name == "scratches") {
-    description.source = ScratchesSurface{};
-  } else {
-    MapFile file;
-    file.path = name;
-    file.invalid = TexelRepair::repair;
-    description.source = file;
-  }
-  return make_surface(description, nullptr);
-}
-
-/// Random footprints, each with a normal under it blurred by the roughness.
-std::vector<Query> random_queries(const Surface& surface, double sigma_texels, double roughness,
-                                  std::size_t count) {
-  std::vector<Query> queries(count);
-  for (std::size_t n = 0; n < count; ++n) {
-    const auto random = [&](std::uint64_t stream) { return synthesis::random_unit(7, stream, n); };
-    const auto disk = [&](std::uint64_t stream) {
-      const double radius = std::sqrt(-2 * std::log(1 - random(stream))),
-                   angle = 2 * kPi * random(stream + 1);
-      return Eigen::Vector2d(radius * std::cos(angle), radius * std::sin(angle));
-    };
-    queries[n].footprint = make_footprint(surface, {random(0), random(1)}, sigma_texels, sigma_texels, 0);
-    const Eigen::Vector2d place =
-        Eigen::Vector2d(random(0) * surface.width(), random(1) * surface.height()) + sigma_texels * disk(2);
-    const Eigen::Vector2d& normal = surface.texel(std::lround(place.x()), std::lround(place.y()));
-    queries[n].half_vector = (normal + roughness * disk(4)).cwiseMax(-1).cwiseMin(1);
-    queries[n].roughness = roughness;
-  }
-  return queries;
-}
-
-/// Queries a second: the median of the repeats after a warm-up, on as many queries as take about 0.03 s.
+/// Queries a second: the median of the repeats after a warm-up, on as many queries as take about 0.03 s; of
+/// three repeats where four queries take ten times as long.
 double rate(Evaluator* evaluator, const std::vector<Query>& queries) {
   std::size_t count = 4;
+  double once = 0;
   for (; count < queries.size(); count = std::min(4 * count, queries.size())) {
     const Stopwatch watch;
     evaluator->evaluate({queries.begin(), queries.begin() + static_cast<long>(count)});
-    if (watch.seconds() > kSecondsARepeat) break;
+    once = watch.seconds();
+    if (once > kSecondsARepeat) break;
   }
   const std::vector<Query> batch(queries.begin(), queries.begin() + static_cast<long>(count));
   std::vector<double> seconds;
-  for (int repeat = 0; repeat < kRepeats; ++repeat) {
+  for (int repeat = 0; repeat < (once > 10 * kSecondsARepeat ? 3 : kRepeats); ++repeat) {
     const Stopwatch watch;
     evaluator->evaluate(batch);
     seconds.push_back(watch.seconds());
@@ -94,124 +50,36 @@ double rate(Evaluator* evaluator, const std::vector<Query>& queries) {
   return static_cast<double>(count) / timing_of(seconds).median_seconds;
 }
 
-double error_of(Evaluator* evaluator, const std::vector<Query>& queries, const std::vector<float>& expected) {
-  const std::vector<float> densities = evaluator->evaluate(queries);
-  double squares = 0, references = 0;
-  for (std::size_t n = 0; n < queries.size(); ++n) {
-    squares += std::pow(densities[n] - expected[n], 2);
-    references += std::pow(expected[n], 2);
-  }
-  return std::sqrt(squares / references);
+SampledError error_of(Evaluator* evaluator, const std::vector<Query>& queries,
+                      const std::vector<float>& expected) {
+  return sampled_error(evaluator->evaluate(queries), expected, 1);
 }
 
-/// Queries that errors are told from: triangles take seconds for a few wide footprints.
-std::size_t compared(double sigma) {
-  return sigma > 128 ? 32 : sigma > 32 ? 128 : sigma > 8 ? 512 : 2048;
+/// In percent, with its standard deviation.
+std::string in_percent(const SampledError& error) {
+  return fmt::format("{:.3f}({:.3f})%", 100 * error.relative_l2, 100 * error.deviation);
 }
 
-/// Nanoseconds of one core that a query takes.
-double core_nanoseconds(Evaluator* evaluator, const std::vector<Query>& queries) {
-  evaluator->evaluate(thinned(queries, 64));
-  std::vector<double> seconds;
-  for (int repeat = 0; repeat < kRepeats; ++repeat) {
-    const std::clock_t start = std::clock();
-    evaluator->evaluate(queries);
-    seconds.push_back(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
-  }
-  return 1e9 * timing_of(seconds).median_seconds / static_cast<double>(queries.size());
-}
-
-double mean(const std::vector<float>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
-
-/// Of an evaluator, what a row of queries took and what its cost model goes by.
-struct CostRow {
-  double nanoseconds, blocks, counts;
+/// Queries that errors are told from, and what `triangles` make of them: as many as take about 3 s, 16 at
+/// least.
+struct Compared {
+  std::vector<Query> queries;
+  std::vector<float> expected;
 };
-using CostRows = std::map<std::string, std::vector<CostRow>>;
-
-/// The model with the least squares of relative differences; what would be negative is left out.
-CostModel fit(const std::vector<CostRow>& rows) {
-  std::array<bool, 3> used = {true, true, true};
-  for (;;) {
-    Eigen::MatrixXd terms(rows.size(), 3);
-    for (std::size_t n = 0; n < rows.size(); ++n)
-      terms.row(static_cast<long>(n)) << used[0], used[1] * rows[n].blocks, used[2] * rows[n].counts;
-    for (std::size_t n = 0; n < rows.size(); ++n) terms.row(static_cast<long>(n)) /= rows[n].nanoseconds;
-    const Eigen::VectorXd found =
-        terms.completeOrthogonalDecomposition().solve(Eigen::VectorXd::Ones(terms.rows()));
-    const auto lowest =
-        static_cast<std::size_t>(std::min_element(found.data(), found.data() + 3) - found.data());
-    if (found[static_cast<long>(lowest)] >= 0) return {found[0], found[1], found[2]};
-    used[lowest] = false;
-  }
-}
-
-void print_fit(const std::string& evaluator, const std::vector<CostRow>& rows) {
-  const CostModel model = fit(rows);
-  double worst = 1, squares = 0;
-  for (const CostRow& row : rows) {
-    const double ratio = std::log(model.of(row.blocks, row.counts) / row.nanoseconds);
-    worst = std::max(worst, std::exp(std::abs(ratio)));
-    squares += ratio * ratio;
-  }
-  fmt::print("{:<12} {{{:.4g}, {:.3g}, {:.3g}}}, off by a factor of {:.2f} (RMS), {:.2f} at most\n",
-             evaluator, model.query, model.block, model.count, std::exp(std::sqrt(squares / rows.size())),
-             worst);
-}
-
-/// What queries cost and what their kernels count, of every evaluator that `auto` may choose.
-void measure_costs(Device& device, const std::string& name, double roughness, CostRows* rows) {
-  const Surface surface = make_named(name);
-  using Count = std::function<std::vector<float>(const std::vector<Query>&)>;
-  const auto measure = [&](const std::string& evaluator, const std::vector<double>& sigmas, bool blocks,
-                           Evaluator* timed, const Count& counts) {
-    for (const double sigma : sigmas) {
-      const std::size_t count = sigma > 8 ? 1 << 10 : 1 << 12;
-      const std::vector<Query> queries = random_queries(surface, sigma, roughness, count);
-      CostRow row{core_nanoseconds(timed, queries), 0, mean(counts(queries))};
-      if (blocks) row.blocks = blocks_reached(queries.front(), surface.width(), surface.height());
-      fmt::print("{:<10} {:>5} {:>4}  {:<12} {:>10.0f} ns {:>10.0f} counts\n", name, roughness, sigma,
-                 evaluator, row.nanoseconds, row.counts);
-      std::fflush(stdout);
-      (*rows)[evaluator].push_back(row);
-    }
-  };
-  const std::vector<double> small = {1, 2, 4, 8, 16, 32}, large = {32, 128, 512};
-  TriangleSettings triangles;
-  TriangleEvaluator timed_triangles(device, surface, triangles);
-  triangles.count_flops = true;
-  TriangleEvaluator counting_triangles(device, surface, triangles);
-  measure("triangles", small, true, &timed_triangles,
-          [&](const auto& queries) { return counting_triangles.evaluate(queries); });
-  for (const int elements : {1, 2, 4}) {
-    MixtureSettings mixture;
-    mixture.elements = elements;
-    GaussianEvaluator timed(device, surface, mixture);
-    mixture.count_elements = true;
-    GaussianEvaluator counting(device, surface, mixture);
-    measure(fmt::format("gaussians {}", elements), small, true, &timed,
-            [&](const auto& queries) { return counting.evaluate(queries); });
-  }
-  PyramidEvaluator pyramid(device, surface);
-  if (roughness >= 0.02)  // others cost alike, and their levels take long to build
-    measure("pyramid", large, false, &pyramid,
-            [&](const auto& queries) { return pyramid.count_elements(queries); });
-}
-
-void fit_costs(Device& device, const std::vector<std::string>& names) {
-  CostRows rows;
-  for (const std::string& name : names)
-    for (const double roughness : {0.02, 0.005}) measure_costs(device, name, roughness, &rows);
-  fmt::print("\nhost/engine/cost_model.cpp: ns of a query, a block, a count\n");
-  for (const auto& [evaluator, measured] : rows) print_fit(evaluator, measured);
+Compared compared(Evaluator* triangles, const std::vector<Query>& queries) {
+  constexpr double affordable_seconds = 3;
+  const Stopwatch watch;
+  triangles->evaluate(thinned(queries, queries.size() / 4));
+  const double count = std::clamp(4 * affordable_seconds / watch.seconds(), 16.0, 16384.0);
+  Compared some;
+  some.queries = thinned(queries, queries.size() / static_cast<std::size_t>(count));
+  some.expected = triangles->evaluate(some.queries);
+  return some;
 }
 
 struct Effort {
   bool quick = false;  ///< few footprints
   bool timed = true;
-  bool costs = false;  ///< nothing but these
 };
 
 struct Fixed {
@@ -228,8 +96,7 @@ class Bench {
  private:
   void measure(double sigma);
   /// The fastest of the evaluators of texels that keep 1% here, and its rate.
-  std::pair<std::string, double> best_fixed(const std::vector<Query>& queries, const std::vector<Query>& few,
-                                            const std::vector<float>& expected);
+  std::pair<std::string, double> best_fixed(const std::vector<Query>& queries, const Compared& some);
   const std::string& choice_of(const Query& query) const;
   std::string of_public_code(double sigma, double rate) const;
 
@@ -259,13 +126,13 @@ Bench::Bench(Device& device, const std::string& name, double roughness, const Ef
   std::vector<Query> sample;
   for (const double sigma : sigmas) {
     queries_[sigma] = random_queries(surface_, sigma, roughness, 1 << 16);
-    const std::vector<Query> some = thinned(queries_[sigma], sigma > 32 ? 1024 : 64);
+    const std::vector<Query> some = thinned(queries_[sigma], (1 << 16) / AutoEvaluator::kMostSamples);
     sample.insert(sample.end(), some.begin(), some.end());
   }
   const Stopwatch watch;
-  auto_.calibrate(sample);
+  auto_.calibrate({sample});
   const double seconds = watch.seconds();
-  strict_.calibrate(sample);
+  strict_.calibrate({sample});
   fmt::print("{} {}: auto calibrated in {:.1f} s, for 0.1% in {:.1f} s\n", name, roughness, seconds,
              watch.seconds() - seconds);
   for (const int elements : {1, 2, 4})
@@ -286,32 +153,29 @@ void Bench::run() {
 
 void Bench::measure(double sigma) {
   const std::vector<Query>& queries = queries_[sigma];
-  const std::vector<Query> few = thinned(queries, queries.size() / compared(sigma));
-  const std::vector<float> expected = triangles_.evaluate(few);
-  const double pyramid_error = error_of(&pyramid_, few, expected),
-               auto_error = error_of(&auto_, few, expected), strict_error = error_of(&strict_, few, expected);
+  const Compared some = compared(&triangles_, queries);
+  const auto error = [&some](Evaluator* evaluator) {
+    return in_percent(error_of(evaluator, some.queries, some.expected));
+  };
   std::pair<std::string, double> fixed("-", 1);
   if (effort_.timed) {
     pyramid_rates_[sigma] = rate(&pyramid_, queries), auto_rates_[sigma] = rate(&auto_, queries);
-    fixed = best_fixed(queries, few, expected);
+    fixed = best_fixed(queries, some);
   }
-  fmt::print(
-      "{:<10} {:>5} {:>5}  {:>8.3f}% {:>10.0f}  {:>8.3f}% {:>10.0f} {:>7.2f}x  {:>8.4f}%  {:<12} {}{}\n",
-      name_, roughness_, sigma, 100 * pyramid_error, pyramid_rates_[sigma], 100 * auto_error,
-      auto_rates_[sigma], auto_rates_[sigma] / fixed.second, 100 * strict_error, fixed.first,
-      choice_of(queries.front()), of_public_code(sigma, auto_rates_[sigma]));
+  fmt::print("{:<10} {:>5} {:>5} {:>6}  {:>14} {:>10.0f}  {:>14} {:>10.0f} {:>7.2f}x  {:>14}  {:<12} {}{}\n",
+             name_, roughness_, sigma, some.queries.size(), error(&pyramid_), pyramid_rates_[sigma],
+             error(&auto_), auto_rates_[sigma], auto_rates_[sigma] / fixed.second, error(&strict_),
+             fixed.first, choice_of(queries.front()), of_public_code(sigma, auto_rates_[sigma]));
   std::fflush(stdout);
 }
 
-std::pair<std::string, double> Bench::best_fixed(const std::vector<Query>& queries,
-                                                 const std::vector<Query>& few,
-                                                 const std::vector<float>& expected) {
-  std::pair<std::string, double> best("triangles", rate(&triangles_, queries));
+std::pair<std::string, double> Bench::best_fixed(const std::vector<Query>& queries, const Compared& some) {
+  const std::pair<std::string, double> best("triangles", rate(&triangles_, queries));
   for (const Fixed& mixture : mixtures_) {
-    if (error_of(mixture.evaluator.get(), few, expected) > 0.01) continue;
     const double gaussians = rate(mixture.evaluator.get(), queries);
-    if (gaussians > best.second) best = {mixture.name, gaussians};
-    break;  // more elements are slower
+    if (gaussians < best.second) break;  // more elements are slower
+    if (error_of(mixture.evaluator.get(), some.queries, some.expected).relative_l2 <= 0.01)
+      return {mixture.name, gaussians};
   }
   return best;
 }
@@ -357,7 +221,7 @@ void zoom(Device& device, const std::string& name, double roughness) {
     const std::vector<float> densities = pyramid.evaluate(queries);
     const auto choice = pyramid.choose(queries.front());
     const int block = choice ? choice->block + (choice->uniform ? 1 : 0) : 0;
-    if (frame > 0) changes[frame] = error_of(&pyramid, queries, last);
+    if (frame > 0) changes[frame] = sampled_error(densities, last, 1).relative_l2;
     level_changes[frame] = frame > 0 && block != last_block;
     last_block = block, last = densities;
   }
@@ -377,17 +241,13 @@ int run(std::vector<std::string> names, const Effort& effort) {
   const Stopwatch watch;
   Device device(0);
   if (names.empty()) names = {"spectrum", "brushed", "flakes", "scratches"};
-  if (effort.costs) {
-    fit_costs(device, names);
-    return 0;
-  }
   fmt::print(
       "device {}; random footprints, wall clock, median of {}\n"
       "[Yan16]'s code and manifolds: as measured on another machine, of twice the peak\n\n",
       device.info().name, kRepeats);
-  fmt::print("{:<10} {:>5} {:>5}  {:>9} {:>10}  {:>9} {:>10} {:>8}  {:>9}  {:<12} {}\n", "surface", "rough",
-             "sigma", "pyramid", "queries/s", "auto 1%", "queries/s", "of best", "auto 0.1%", "best fixed",
-             "auto's choice");
+  fmt::print("{:<10} {:>5} {:>5} {:>6}  {:>14} {:>10}  {:>14} {:>10} {:>8}  {:>14}  {:<12} {}\n", "surface",
+             "rough", "sigma", "of", "pyramid", "queries/s", "auto 1%", "queries/s", "of best", "auto 0.1%",
+             "best fixed", "auto's choice");
   for (const std::string& name : names)
     for (const double roughness : {0.02, 0.005}) Bench(device, name, roughness, effort).run();
   for (const std::string& name : names) zoom(device, name, 0.02);
@@ -410,7 +270,6 @@ int main(int argc, char** argv) {
     mica::bench::Effort effort;
     effort.quick = taken("--quick");
     effort.timed = !taken("--errors");
-    effort.costs = taken("--costs");
     return mica::bench::run(names, effort);
   } catch (const mica::Error& error) {
     fmt::print(stderr, "pyramid_bench: {}\n", error.what());

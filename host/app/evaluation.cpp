@@ -111,11 +111,11 @@ OpenEvaluator open_evaluator(const std::string& name, std::optional<double> tole
 }
 
 void calibrate(const OpenEvaluator& open, const Surface& surface, std::size_t count,
-               const std::function<Query(std::size_t)>& query) {
+               const std::function<Query(std::size_t)>& query, double scale) {
   auto* const chooser = dynamic_cast<AutoEvaluator*>(open.evaluator.get());
   if (chooser == nullptr) return;
-  chooser->calibrate(
-      calibration_sample(count, AutoEvaluator::kMostSamples, surface.width(), surface.height(), query));
+  chooser->calibrate(calibration_sample(count, AutoEvaluator::kMostSamples, surface.width(), surface.height(),
+                                        query, scale));
   for (const AutoChoice& choice : chooser->choices())
     spdlog::info(
         "auto: footprints of about {:.3g} texels, roughness from {:.3g}: {}; relative L2 {:.2g}, at most "

@@ -33,8 +33,9 @@ OpenEvaluator open_evaluator(const std::string& name, std::optional<double> tole
                              const Surface& surface, int elements);
 
 /// For `auto`: chooses by a sample of queries 0 .. count - 1, and logs the choices. Others need none.
+/// @param scale how many queries each of these stands for.
 void calibrate(const OpenEvaluator& open, const Surface& surface, std::size_t count,
-               const std::function<Query(std::size_t)>& query);
+               const std::function<Query(std::size_t)>& query, double scale = 1);
 
 /// What `auto` chose for each kind of query; empty for others.
 nlohmann::json describe_choices(const OpenEvaluator& open);

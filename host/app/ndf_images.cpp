@@ -94,7 +94,9 @@ std::vector<float> draw_images(const OpenEvaluator& open, const Surface& surface
   const std::size_t queries = count * pixels.size();
   constexpr std::size_t looked_at = 1 << 16;  // by the calibration: the footprints are all of one size
   const std::size_t stride = std::max<std::size_t>(queries / looked_at, 1);
-  calibrate(open, surface, queries / stride, [&](std::size_t n) { return query_of(n * stride); });
+  calibrate(
+      open, surface, queries / stride, [&](std::size_t n) { return query_of(n * stride); },
+      static_cast<double>(stride));
   const std::vector<float> densities = evaluate_all(open.evaluator.get(), queries, query_of);
   std::vector<float> images(count * window.count());
   for (std::size_t n = 0; n < queries; ++n)

@@ -1,13 +1,13 @@
 #include "host/engine/auto_evaluator.h"
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
-#include <numeric>
-#include <optional>
 
 #include "host/base/error.h"
 #include "host/engine/collected_densities.h"
@@ -15,6 +15,7 @@
 #include "host/engine/map_query.h"
 #include "host/engine/mixture_evaluator.h"
 #include "host/engine/pyramid_evaluator.h"
+#include "host/engine/sampled_error.h"
 #include "host/engine/triangle_evaluator.h"
 #include "host/surface/random.h"
 
@@ -26,30 +27,35 @@ constexpr double kTrianglesError = 1e-4;  // what `triangles` are off by, at mos
 
 enum class Method { pyramid, gaussians, triangles };
 
-/// A candidate is judged by the first so many of a class's samples, and by more only while these cannot tell.
-constexpr std::array<std::size_t, 3> kLooks = {64, 256, AutoEvaluator::kMostSamples};
-/// Of the bounds of each: so that all of them hold at 95%.
-constexpr double kConfidence = 1 - 0.05 / kLooks.size();
-/// Core nanoseconds that the expected densities of a class may take, where the first look does not.
-constexpr double kMostLooking = 2e9;
+/// Pyramids from the cheapest to the most precise, and the least relative L2 that was seen of each on maps
+/// like those of bench/pyramid_bench.cpp: for a tolerance below it, building its levels is not worth a try.
+struct PyramidCandidate {
+  PyramidPrecision precision;
+  double least_error;
+};
+const std::array<PyramidCandidate, 5> kPyramids = {{{{std::sqrt(2.0), 2, 5e-2}, 4e-3},
+                                                    {{std::sqrt(2.0), 1.5, 3e-2}, 2e-3},
+                                                    {{std::sqrt(0.5), 1.5, 1e-2}, 1e-3},
+                                                    {{std::sqrt(0.5), 1, 1e-3}, 1e-4},
+                                                    {{std::sqrt(0.125), 0.75, 1e-4}, 0}}};
 
-/// Upper bound, at kConfidence, of the relative L2 whose squares were sampled: the bootstrap's.
-double bootstrap_bound(const std::vector<double>& squares, const std::vector<double>& references) {
-  constexpr int resamples = 400;
-  const std::size_t count = squares.size();
-  std::vector<double> errors(resamples);
-  for (int k = 0; k < resamples; ++k) {
-    double square = 0, reference = 0;
-    for (std::size_t n = 0; n < count; ++n) {
-      const auto pick =
-          static_cast<std::size_t>(synthesis::random_unit(5, k, n) * static_cast<double>(count));
-      square += squares[pick];
-      reference += references[pick];
-    }
-    errors[k] = reference > 0 ? std::sqrt(square / reference) : 0;
-  }
-  std::sort(errors.begin(), errors.end());
-  return errors[static_cast<std::size_t>(kConfidence * resamples)];
+/// Fewer do not tell a bound.
+constexpr std::size_t kFewestSamples = 16;
+/// A candidate is judged by the first so many of a class's samples, and by more only while these cannot tell;
+/// by the fewest only whether it breaks the tolerance, where there are more.
+constexpr std::array<std::size_t, 5> kLooks = {kFewestSamples, 256, 1024, 4096, AutoEvaluator::kMostSamples};
+/// Of the normal distribution, at 1 - 0.05 / 4: so that the bounds of all looks hold at 95%.
+constexpr double kQuantile = 2.2414;
+/// Seconds of a core that counting the costs of a class may take.
+constexpr double kCountingSeconds = 0.1;
+
+/// Evaluates up to the first `end` of the queries, from where `densities` end.
+void extend(Evaluator* evaluator, const std::vector<Query>& queries, std::size_t end,
+            std::vector<float>* densities) {
+  if (end <= densities->size()) return;
+  const auto at = [&](std::size_t n) { return queries.begin() + static_cast<std::ptrdiff_t>(n); };
+  const std::vector<float> more = evaluator->evaluate({at(densities->size()), at(end)});
+  densities->insert(densities->end(), more.begin(), more.end());
 }
 
 double typical_density(const std::vector<float>& densities) {
@@ -65,40 +71,38 @@ struct AutoEvaluator::Candidate {
   int elements;
   PyramidPrecision precision;
   std::string label;
-  std::unique_ptr<Evaluator> built = {}, counter = {};
+  std::unique_ptr<Evaluator> built = {};
 
-  std::unique_ptr<Evaluator> make(Device& device, const Surface& surface, bool count) const {
-    if (method == Method::triangles) {
-      TriangleSettings settings;
-      settings.count_flops = count;
-      return std::make_unique<TriangleEvaluator>(device, surface, settings);
-    }
+  std::unique_ptr<Evaluator> make(Device& device, const Surface& surface) const {
+    if (method == Method::triangles) return std::make_unique<TriangleEvaluator>(device, surface);
     if (method == Method::gaussians) {
       MixtureSettings settings;
       settings.elements = elements;
-      settings.count_elements = count;
       return std::make_unique<GaussianEvaluator>(device, surface, settings);
     }
     PyramidSettings settings;
     settings.precision = precision;
     return std::make_unique<PyramidEvaluator>(device, surface, settings);
   }
+
+  CostModel cost_model(const Surface& surface) const {
+    if (method == Method::triangles) return triangles_cost(surface.interpolation());
+    return method == Method::gaussians ? gaussians_cost(elements) : pyramid_cost();
+  }
 };
 
-AutoEvaluator::AutoEvaluator(Device& device, const Surface& surface, double tolerance)
-    : device_(device), surface_(surface), tolerance_(tolerance) {
+AutoEvaluator::AutoEvaluator(Device& device, const Surface& surface, double tolerance, double looking_seconds)
+    : device_(device), surface_(surface), tolerance_(tolerance), looking_seconds_(looking_seconds) {
   if (!(tolerance >= kLeastTolerance))
     throw UsageError(
         fmt::format("tolerance {}: auto keeps {} or more; for less use triangles (1e-4) or reference",
                     tolerance, kLeastTolerance));
   // Of each method from the cheapest to the most precise.
-  for (const PyramidPrecision& precision :
-       {PyramidPrecision{std::sqrt(2.0), 2, 5e-2}, PyramidPrecision{std::sqrt(2.0), 1.5, 3e-2},
-        PyramidPrecision{std::sqrt(0.5), 1.5, 1e-2}, PyramidPrecision{std::sqrt(0.5), 1, 1e-3},
-        PyramidPrecision{std::sqrt(0.125), 0.75, 1e-4}})
-    candidates_.push_back({Method::pyramid, 0, precision,
-                           fmt::format("pyramid, blocks of {:.2g} footprints, cells of {:.2g} roughnesses",
-                                       precision.block_ratio, precision.cell_ratio)});
+  for (const auto& [precision, least_error] : kPyramids)
+    if (tolerance > least_error)
+      candidates_.push_back({Method::pyramid, 0, precision,
+                             fmt::format("pyramid, blocks of {:.2g} footprints, cells of {:.2g} roughnesses",
+                                         precision.block_ratio, precision.cell_ratio)});
   if (surface.interpolation() != Interpolation::bicubic)
     for (const int elements : {1, 2, 4})
       candidates_.push_back(
@@ -114,11 +118,14 @@ QueryClass class_of(const Query& query, int map_width, int map_height) {
           static_cast<int>(std::floor(2 * std::log2(query.roughness / kFirstRoughness) + slack))};
 }
 
-std::vector<Query> calibration_sample(std::size_t count, std::size_t each, int map_width, int map_height,
-                                      const std::function<Query(std::size_t)>& query) {
+CalibrationSample calibration_sample(std::size_t count, std::size_t each, int map_width, int map_height,
+                                     const std::function<Query(std::size_t)>& query, double scale) {
   std::map<QueryClass, std::vector<std::pair<double, std::size_t>>> kept;  // heaps, largest key first
+  CalibrationSample sample;
   for (std::size_t n = 0; n < count; ++n) {
-    auto& heap = kept[class_of(query(n), map_width, map_height)];
+    const QueryClass kind = class_of(query(n), map_width, map_height);
+    sample.counts[kind] += scale;
+    auto& heap = kept[kind];
     const std::pair<double, std::size_t> entry(synthesis::random_unit(9, 0, n), n);
     if (heap.size() == each) {
       if (!(entry < heap.front())) continue;
@@ -128,121 +135,117 @@ std::vector<Query> calibration_sample(std::size_t count, std::size_t each, int m
     heap.push_back(entry);
     std::push_heap(heap.begin(), heap.end());
   }
-  std::vector<Query> sample;
   for (auto& [kind, heap] : kept) {
     std::sort(heap.begin(), heap.end());
-    for (const auto& entry : heap) sample.push_back(query(entry.second));
+    for (const auto& entry : heap) sample.queries.push_back(query(entry.second));
   }
   return sample;
 }
 
-void AutoEvaluator::calibrate(const std::vector<Query>& sample) {
+void AutoEvaluator::calibrate(const CalibrationSample& sample) {
   std::map<QueryClass, std::vector<Query>> by_class;
-  for (const Query& query : sample)
+  for (const Query& query : sample.queries)
     by_class[class_of(query, surface_.width(), surface_.height())].push_back(query);
-  for (const auto& [kind, queries] : by_class) choices_.push_back(choose(kind, queries));
-  // What nothing uses is not kept.
-  for (std::size_t n = 0; n < candidates_.size(); ++n) {
-    candidates_[n].counter.reset();
-    const bool used = std::any_of(candidate_of_.begin(), candidate_of_.end(),
-                                  [n](const auto& entry) { return entry.second == n; });
-    if (!used) candidates_[n].built.reset();
+  for (const auto& [kind, queries] : by_class) {
+    const auto count = sample.counts.find(kind);
+    const double many = std::numeric_limits<double>::infinity();
+    choices_.push_back(choose(kind, {queries, count == sample.counts.end() ? many : count->second}));
   }
+  // What nothing uses is not kept.
+  flops_counter_.reset(), elements_counter_.reset();
+  for (Candidate& candidate : candidates_)
+    if (!is_chosen(candidate)) candidate.built.reset();
 }
 
-AutoChoice AutoEvaluator::choose(const QueryClass& kind, const std::vector<Query>& sample) {
-  constexpr std::size_t fewest_samples = 16;  // that a bound can be told from
-  const std::size_t triangles = candidates_.size() - 1;
-  Samples samples{sample};
-  look_at(&samples, kLooks.front());
-  AutoChoice best{kind, candidates_[triangles].label, samples.expected.size(), 0, kTrianglesError};
-  best.typical_density = typical_density(samples.expected);
-  best.cost = cost(&candidates_[triangles], samples);
-  candidate_of_[kind] = triangles;
-  if (sample.size() < fewest_samples) return best;
-  samples.most = static_cast<std::size_t>(kMostLooking / best.cost);
+bool AutoEvaluator::is_chosen(const Candidate& candidate) const {
+  return std::any_of(candidate_of_.begin(), candidate_of_.end(),
+                     [&](const auto& entry) { return &candidates_[entry.second] == &candidate; });
+}
+
+AutoChoice AutoEvaluator::choose(const QueryClass& kind, Samples samples) {
+  Candidate* const triangles = &candidates_.back();
+  AutoChoice best{kind, triangles->label, 0, 0, kTrianglesError};
+  best.cost = cost(triangles, samples.queries, std::min<std::size_t>(2, samples.queries.size()));
+  const auto affordable = [&](double seconds, std::size_t fewest, std::size_t most) {
+    return std::min(std::clamp(static_cast<std::size_t>(1e9 * seconds / best.cost), fewest, most),
+                    samples.queries.size());
+  };
+  samples.counted = affordable(kCountingSeconds, 2, 64);
+  if (samples.counted > 2) best.cost = cost(triangles, samples.queries, samples.counted);
+  samples.most = affordable(looking_seconds_, kFewestSamples, kLooks.back());
+  extend(evaluator(triangles), samples.queries, std::min(kFewestSamples, samples.most), &samples.expected);
+  candidate_of_[kind] = candidates_.size() - 1;
   for (const Method method : {Method::pyramid, Method::gaussians}) {
-    for (std::size_t n = 0; n < triangles; ++n) {
+    for (std::size_t n = 0; n + 1 < candidates_.size() && samples.most >= kFewestSamples; ++n) {
       if (candidates_[n].method != method) continue;
       AutoChoice choice{kind, candidates_[n].label};
       choice.cost = best.cost;  // which is the one to beat
       const Verdict verdict = judge(&candidates_[n], &samples, &choice);
-      if (verdict == Verdict::keeps) {
-        choice.typical_density = typical_density(samples.expected);
-        best = choice, candidate_of_[kind] = n;
-      }
+      if (verdict == Verdict::keeps) best = choice, candidate_of_[kind] = n;
       if (verdict != Verdict::breaks) break;  // the next ones of this method cost more
     }
   }
+  best.samples = best.samples == 0 ? samples.expected.size() : best.samples;
+  best.typical_density = typical_density(samples.expected);
   return best;
 }
 
-void AutoEvaluator::look_at(Samples* samples, std::size_t count) {
-  const std::size_t done = samples->expected.size(), end = std::min(count, samples->queries.size());
-  if (end <= done) return;
-  const auto first = samples->queries.begin();
-  const std::vector<float> more =
-      evaluator(&candidates_.back())
-          ->evaluate({first + static_cast<std::ptrdiff_t>(done), first + static_cast<std::ptrdiff_t>(end)});
-  samples->expected.insert(samples->expected.end(), more.begin(), more.end());
-}
-
 AutoEvaluator::Verdict AutoEvaluator::judge(Candidate* candidate, Samples* samples, AutoChoice* choice) {
-  Evaluator* const built = evaluator(candidate);
-  if (auto* pyramid = dynamic_cast<PyramidEvaluator*>(built);
-      pyramid != nullptr && !pyramid->choose(samples->queries.front()))
+  if (candidate->method == Method::pyramid && !pyramid(candidate)->choose(samples->queries.front()))
     return Verdict::breaks;  // it would only pass them on to the texels
-  std::optional<double> cost_of_query;
+  const CostModel model = candidate->cost_model(surface_);
+  const int width = surface_.width(), height = surface_.height();
+  const double build = model.texel * static_cast<double>(width) * height;
+  if (!is_chosen(*candidate) && samples->in_job * choice->cost < build)
+    return Verdict::costs_more;  // others have answered by the time that it is built
+  if (!(model.of(blocks_reached(samples->queries.front(), width, height), 0) < choice->cost))
+    return Verdict::costs_more;  // whatever would be counted
+  const double cost_of_query = cost(candidate, samples->queries, samples->counted);
+  if (!(cost_of_query < choice->cost)) return Verdict::costs_more;
+  Evaluator* const built = evaluator(candidate);
+  std::vector<float> densities;
   for (const std::size_t look : kLooks) {
-    if (look > kLooks.front() &&
-        (samples->expected.size() >= samples->queries.size() || look > samples->most))
-      break;
-    look_at(samples, look);
-    measure(built, *samples, std::min(look, samples->queries.size()), choice);
-    if (!(choice->relative_l2 <= tolerance_)) return Verdict::breaks;
-    if (!cost_of_query) cost_of_query = cost(candidate, *samples);
-    if (!(*cost_of_query < choice->cost)) return Verdict::costs_more;
-    if (choice->upper_bound > tolerance_) continue;
-    choice->cost = *cost_of_query;
-    return Verdict::keeps;
+    const std::size_t count = std::min(look, samples->most);
+    extend(evaluator(&candidates_.back()), samples->queries, count, &samples->expected);
+    extend(built, samples->queries, count, &densities);
+    const SampledError error = sampled_error(
+        densities,
+        {samples->expected.begin(), samples->expected.begin() + static_cast<std::ptrdiff_t>(count)},
+        kQuantile);
+    const bool last = count == samples->most;
+    if ((look > kFewestSamples || last) && error.upper_bound + kTrianglesError <= tolerance_) {
+      choice->samples = count, choice->cost = cost_of_query;
+      choice->relative_l2 = error.relative_l2;
+      choice->upper_bound = error.upper_bound + kTrianglesError;  // and what triangles are off by
+      return Verdict::keeps;
+    }
+    if (error.lower_bound > tolerance_ || last) break;
   }
   return Verdict::breaks;
 }
 
-void AutoEvaluator::measure(Evaluator* built, const Samples& samples, std::size_t count, AutoChoice* choice) {
-  const auto first = samples.queries.begin();
-  const std::vector<float> densities = built->evaluate({first, first + static_cast<std::ptrdiff_t>(count)});
-  std::vector<double> squares(count), references(count);
-  for (std::size_t n = 0; n < count; ++n) {
-    const double reference = samples.expected[n];
-    squares[n] = (densities[n] - reference) * (densities[n] - reference);
-    references[n] = reference * reference;
-  }
-  const double reference = std::accumulate(references.begin(), references.end(), 0.0);
-  choice->samples = count;
-  choice->relative_l2 = reference > 0
-                            ? std::sqrt(std::accumulate(squares.begin(), squares.end(), 0.0) / reference)
-                            : std::numeric_limits<double>::infinity();
-  choice->upper_bound =
-      bootstrap_bound(squares, references) + kTrianglesError;  // and what triangles are off by
-}
-
-/// Of the first samples; of triangles, which only have to be beaten, few.
-double AutoEvaluator::cost(Candidate* candidate, const Samples& samples) {
-  const std::size_t count = candidate->method == Method::triangles ? 16 : kLooks.front();
-  const auto first = samples.queries.begin();
-  const std::vector<Query> some(first,
-                                first + static_cast<std::ptrdiff_t>(std::min(count, samples.queries.size())));
-  const CostModel model = candidate->method == Method::triangles   ? triangles_cost()
-                          : candidate->method == Method::gaussians ? gaussians_cost(candidate->elements)
-                                                                   : pyramid_cost();
+double AutoEvaluator::cost(Candidate* candidate, const std::vector<Query>& queries, std::size_t count) {
+  const std::vector<Query> some(queries.begin(), queries.begin() + static_cast<std::ptrdiff_t>(count));
   std::vector<float> counts;
-  if (auto* pyramid = dynamic_cast<PyramidEvaluator*>(evaluator(candidate)); pyramid != nullptr) {
-    counts = pyramid->count_elements(some);
+  if (candidate->method == Method::pyramid) {
+    counts = pyramid(candidate)->count_elements(some);
+  } else if (candidate->method == Method::gaussians) {
+    if (!elements_counter_) {
+      MixtureSettings settings;
+      settings.elements = kCountedMixture;
+      settings.count_elements = true;
+      elements_counter_ = std::make_unique<GaussianEvaluator>(device_, surface_, settings);
+    }
+    counts = elements_counter_->evaluate(some);
   } else {
-    if (!candidate->counter) candidate->counter = candidate->make(device_, surface_, true);
-    counts = candidate->counter->evaluate(some);
+    if (!flops_counter_) {
+      TriangleSettings settings;
+      settings.count_flops = true;
+      flops_counter_ = std::make_unique<TriangleEvaluator>(device_, surface_, settings);
+    }
+    counts = flops_counter_->evaluate(some);
   }
+  const CostModel model = candidate->cost_model(surface_);
   double sum = 0;
   for (std::size_t n = 0; n < some.size(); ++n)
     sum += model.of(blocks_reached(some[n], surface_.width(), surface_.height()), counts[n]);
@@ -258,18 +261,29 @@ double AutoEvaluator::error_estimate(const Query& query, double density) const {
 }
 
 Evaluator* AutoEvaluator::evaluator(Candidate* candidate) {
-  if (!candidate->built) candidate->built = candidate->make(device_, surface_, false);
+  if (!candidate->built) candidate->built = candidate->make(device_, surface_);
   return candidate->built.get();
 }
 
+PyramidEvaluator* AutoEvaluator::pyramid(Candidate* candidate) {
+  return static_cast<PyramidEvaluator*>(evaluator(candidate));
+}
+
 std::unique_ptr<PendingDensities> AutoEvaluator::start(const std::vector<Query>& queries) {
-  std::map<std::size_t, std::vector<std::size_t>> places_of;  // by candidate
-  for (std::size_t n = 0; n < queries.size(); ++n) {
+  std::vector<std::size_t> candidates(queries.size());
+  tbb::parallel_for(std::size_t{0}, queries.size(), [&](std::size_t n) {
     const auto found = candidate_of_.find(class_of(queries[n], surface_.width(), surface_.height()));
-    places_of[found == candidate_of_.end() ? candidates_.size() - 1 : found->second].push_back(n);
-  }
+    candidates[n] = found == candidate_of_.end() ? candidates_.size() - 1 : found->second;
+  });
+  const bool alike =
+      std::adjacent_find(candidates.begin(), candidates.end(), std::not_equal_to<>()) == candidates.end();
+  if (alike && !queries.empty()) return evaluator(&candidates_[candidates.front()])->start(queries);
+  std::vector<std::vector<std::size_t>> places_of(candidates_.size());
+  for (std::size_t n = 0; n < queries.size(); ++n) places_of[candidates[n]].push_back(n);
   auto all = std::make_unique<CollectedDensities>(queries.size());
-  for (auto& [candidate, places] : places_of) {
+  for (std::size_t candidate = 0; candidate < candidates_.size(); ++candidate) {
+    std::vector<std::size_t>& places = places_of[candidate];
+    if (places.empty()) continue;
     std::vector<Query> some(places.size());
     for (std::size_t n = 0; n < places.size(); ++n) some[n] = queries[places[n]];
     all->add(evaluator(&candidates_[candidate])->start(some), std::move(places));

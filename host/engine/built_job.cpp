@@ -90,9 +90,14 @@ std::unique_ptr<Evaluator> BuiltJob::calibrated_evaluator(std::size_t n) {
     for (const GlintQuery& glint : scene_.trace((2 * row + 1) * height / (2 * rows), 1).queries)
       if (plan_.evaluator_of_material[glint.material] == static_cast<int>(n)) queries.push_back(glint.query);
   const double tolerance = job_.accuracy.tolerance;
+  const bool for_one_frame = moves(job_.surfaces[plan_.evaluators[n].surface_index]);
+  double scale = static_cast<double>(height) / rows;
+  if (!for_one_frame) scale *= job_.frames.last - job_.frames.first + 1;
+  if (plan_.gathers_light) scale *= 1 + job_.image.samples;
   auto evaluator = std::make_unique<AutoEvaluator>(device_, surface, tolerance);
-  evaluator->calibrate(calibration_sample(queries.size(), AutoEvaluator::kMostSamples, surface.width(),
-                                          surface.height(), [&](std::size_t k) { return queries[k]; }));
+  evaluator->calibrate(calibration_sample(
+      queries.size(), AutoEvaluator::kMostSamples, surface.width(), surface.height(),
+      [&](std::size_t k) { return queries[k]; }, scale));
   for (const AutoChoice& choice : evaluator->choices())
     notes_.push_back(
         fmt::format("surface {}: auto takes {} for footprints of about {:.3g} texels: relative L2 {:.2g}, at "

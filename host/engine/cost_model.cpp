@@ -13,15 +13,16 @@ double blocks_reached(const Query& query, int map_width, int map_height) {
 }
 
 CostModel gaussians_cost(int elements) {
-  if (elements == 1) return {358, 420, 1.55};
-  if (elements == 2) return {162, 684, 1.22};
-  return {186, 824, 1.12};
+  if (elements == 1) return {366, 380, 0.88, 50};
+  if (elements == 2) return {0, 909, 2.38, 100};
+  return {0, 1140, 9.46, 300};
 }
-CostModel triangles_cost() {
-  return {0, 742, 0.03};
+CostModel triangles_cost(Interpolation interpolation) {
+  if (interpolation == Interpolation::nearest) return {0, 723, 0.0163, 20};
+  return {0, 930, 0.0185, 20};
 }
 CostModel pyramid_cost() {
-  return {812, 0, 2.03};
+  return {628, 0, 1.16, 300};
 }
 
 }  // namespace mica

@@ -3,12 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
 #include "host/base/error.h"
 #include "host/engine/accuracy.h"
 #include "host/engine/make_evaluator.h"
+#include "host/engine/sampled_error.h"
 #include "host/reference/oracle.h"
 #include "host/surface/random.h"
 #include "tests/engine/bilinear_samples.h"
@@ -39,11 +41,18 @@ std::vector<Query> mixed_queries(const Surface& surface, int count, std::uint64_
   return queries;
 }
 
+std::vector<Query> queries_of_8_texels(const Surface& surface, int count) {
+  std::vector<Query> queries = mixed_queries(surface, 3 * count, 14);
+  for (int n = 0; n < count; ++n) queries[n] = queries[3 * n + 1];
+  queries.resize(count);
+  return queries;
+}
+
 std::unique_ptr<AutoEvaluator> calibrated(const Surface& surface, double tolerance,
                                           const std::vector<Query>& queries) {
   auto chooser = std::make_unique<AutoEvaluator>(device(), surface, tolerance);
-  chooser->calibrate(calibration_sample(queries.size(), 40, surface.width(), surface.height(),
-                                        [&](std::size_t n) { return queries[n]; }));
+  chooser->calibrate(calibration_sample(
+      queries.size(), 40, surface.width(), surface.height(), [&](std::size_t n) { return queries[n]; }, 1e4));
   return chooser;
 }
 
@@ -72,26 +81,66 @@ TEST(Auto, TakesThePyramidForLargeFootprintsAndTexelsForSmallOnes) {
   EXPECT_EQ(chooser->choices().back().evaluator.find("pyramid"), 0u) << chooser->choices().back().evaluator;
 }
 
-/// Between what 64 samples of a cheap evaluator show and what they prove, more samples tell.
+/// Between what few samples of a cheap evaluator show and what they prove, more samples tell, as far as they
+/// are affordable.
 TEST(Auto, LooksAtMoreSamplesWhereFewCannotTell) {
   const Surface surface = spectrum();
-  std::vector<Query> queries = mixed_queries(surface, 3 * 1024, 14);
-  for (std::size_t n = 0; n < 1024; ++n) queries[n] = queries[3 * n + 1];  // of 8 texels
-  queries.resize(1024);
-  const std::vector<Query> few(queries.begin(), queries.begin() + 64);
-  const auto choice_of = [&](double tolerance, const std::vector<Query>& sample) {
-    AutoEvaluator chooser(device(), surface, tolerance);
-    chooser.calibrate(sample);
+  const std::vector<Query> queries = queries_of_8_texels(surface, 4096);
+  const std::vector<Query> few(queries.begin(), queries.begin() + 256);
+  const auto choice_of = [&](double tolerance, const std::vector<Query>& sample, double seconds) {
+    AutoEvaluator chooser(device(), surface, tolerance, seconds);
+    chooser.calibrate({sample});
     return chooser.choices().front();
   };
-  const AutoChoice loose = choice_of(0.1, few);
-  ASSERT_EQ(loose.samples, 64u);
+  const AutoChoice loose = choice_of(0.1, queries, 2);
+  ASSERT_EQ(loose.samples, 256u);
   const double tolerance = 0.6 * loose.upper_bound + 0.4 * loose.relative_l2;
-  const AutoChoice strict = choice_of(tolerance, few), told = choice_of(tolerance, queries);
+  const AutoChoice strict = choice_of(tolerance, few, 2), told = choice_of(tolerance, queries, 2);
   EXPECT_GT(strict.cost, 1.1 * loose.cost) << strict.evaluator;
   EXPECT_EQ(told.evaluator, loose.evaluator);
-  EXPECT_GT(told.samples, 64u);
+  EXPECT_EQ(told.samples, 1024u);
   EXPECT_LE(told.upper_bound, tolerance);
+  const AutoChoice hasty = choice_of(tolerance, queries, 1e-9);
+  EXPECT_EQ(hasty.samples, 16u);
+  EXPECT_GT(hasty.cost, 1.1 * loose.cost) << hasty.evaluator;
+}
+
+/// The first samples show more than a tolerance that is kept: they cannot tell either.
+TEST(Auto, LooksAtMoreSamplesWhereFewShowTooMuch) {
+  const Surface surface = spectrum();
+  std::vector<Query> queries = queries_of_8_texels(surface, 4096);
+  const std::vector<float> expected = make_evaluator("triangles", device(), surface)->evaluate(queries),
+                           densities = make_evaluator("gaussians", device(), surface, 1)->evaluate(queries);
+  double largest = 0;
+  std::ptrdiff_t worst = 0;
+  for (std::ptrdiff_t first = 0; first < 4096; first += 256) {
+    const auto part = [first](const std::vector<float>& all) {
+      return std::vector<float>(all.begin() + first, all.begin() + first + 256);
+    };
+    const double error = sampled_error(part(densities), part(expected), 2).relative_l2;
+    if (error > largest) largest = error, worst = first;
+  }
+  std::rotate(queries.begin(), queries.begin() + worst, queries.end());
+  const double bound = sampled_error(densities, expected, 2.5).upper_bound + 1e-4;
+  ASSERT_LT(bound, largest);
+  AutoEvaluator chooser(device(), surface, 0.5 * (bound + largest));
+  chooser.calibrate({queries});
+  EXPECT_EQ(chooser.choices().front().evaluator, "gaussians, 1 a texel and axis");
+  EXPECT_GT(chooser.choices().front().samples, 256u);
+}
+
+/// A structure that takes longer to build than its queries take without it is not built.
+TEST(Auto, BuildsNothingThatFewQueriesCannotRepay) {
+  const Surface surface = spectrum();
+  const std::vector<Query> queries = mixed_queries(surface, 600, 10);
+  const auto choices_for = [&](double queries_of_a_class) {
+    AutoEvaluator chooser(device(), surface, 0.01);
+    chooser.calibrate(calibration_sample(
+        queries.size(), 100, 256, 256, [&](std::size_t n) { return queries[n]; }, queries_of_a_class / 200));
+    return chooser.choices();
+  };
+  for (const AutoChoice& choice : choices_for(1)) EXPECT_EQ(choice.evaluator, "triangles");
+  EXPECT_EQ(choices_for(1e7).back().evaluator.find("pyramid"), 0u);
 }
 
 TEST(Auto, AnswersAreTheSameInAnyBatch) {
@@ -139,7 +188,7 @@ TEST(Auto, EstimatesTheErrorOfEachQuery) {
 TEST(Auto, AnswersWhatItWasNotCalibratedForWithTriangles) {
   const Surface surface = spectrum();
   AutoEvaluator chooser(device(), surface, 0.01);
-  chooser.calibrate({});
+  chooser.calibrate(CalibrationSample{});
   const std::vector<Query> queries = mixed_queries(surface, 12, 12);
   std::vector<double> expected;
   for (const reference::OracleResult& result : reference::Oracle(surface, 1e-6).evaluate(queries))
@@ -156,11 +205,13 @@ TEST(Auto, RefusesToPromiseTooMuch) {
 TEST(Auto, SamplesEveryClass) {
   const Surface surface = spectrum();
   const std::vector<Query> queries = mixed_queries(surface, 300, 10);
-  const std::vector<Query> sample =
-      calibration_sample(queries.size(), 7, 256, 256, [&](std::size_t n) { return queries[n]; });
-  EXPECT_EQ(sample.size(), 21u);
+  const CalibrationSample sample = calibration_sample(
+      queries.size(), 7, 256, 256, [&](std::size_t n) { return queries[n]; }, 2.5);
+  EXPECT_EQ(sample.queries.size(), 21u);
+  ASSERT_EQ(sample.counts.size(), 3u);
+  for (const auto& [kind, count] : sample.counts) EXPECT_DOUBLE_EQ(count, 250) << kind.size;
   std::map<int, int> counts;
-  for (const Query& query : sample) ++counts[class_of(query, 256, 256).size];
+  for (const Query& query : sample.queries) ++counts[class_of(query, 256, 256).size];
   for (const auto& [size, count] : counts) EXPECT_EQ(count, 7) << size;
 }
 
