@@ -8,6 +8,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <set>
 
 #include "host/base/error.h"
 #include "host/engine/collected_densities.h"
@@ -33,7 +34,10 @@ struct PyramidCandidate {
   PyramidPrecision precision;
   double least_error;
 };
-const std::array<PyramidCandidate, 5> kPyramids = {{{{std::sqrt(2.0), 2, 5e-2}, 4e-3},
+const std::array<PyramidCandidate, 8> kPyramids = {{{{std::sqrt(8.0), 2, 5e-2}, 4e-3},
+                                                    {{std::sqrt(8.0), 1.5, 5e-2}, 4e-3},
+                                                    {{std::sqrt(2.0), 2, 5e-2}, 4e-3},
+                                                    {{1.5, 2, 3e-2}, 4e-3},
                                                     {{std::sqrt(2.0), 1.5, 3e-2}, 2e-3},
                                                     {{std::sqrt(0.5), 1.5, 1e-2}, 1e-3},
                                                     {{std::sqrt(0.5), 1, 1e-3}, 1e-4},
@@ -73,7 +77,8 @@ struct AutoEvaluator::Candidate {
   std::string label;
   std::unique_ptr<Evaluator> built = {};
 
-  std::unique_ptr<Evaluator> make(Device& device, const Surface& surface) const {
+  std::unique_ptr<Evaluator> make(Device& device, const Surface& surface,
+                                  const std::shared_ptr<PyramidStore>& store) const {
     if (method == Method::triangles) return std::make_unique<TriangleEvaluator>(device, surface);
     if (method == Method::gaussians) {
       MixtureSettings settings;
@@ -82,6 +87,7 @@ struct AutoEvaluator::Candidate {
     }
     PyramidSettings settings;
     settings.precision = precision;
+    settings.store = store;
     return std::make_unique<PyramidEvaluator>(device, surface, settings);
   }
 
@@ -92,7 +98,13 @@ struct AutoEvaluator::Candidate {
 };
 
 AutoEvaluator::AutoEvaluator(Device& device, const Surface& surface, double tolerance, double looking_seconds)
-    : device_(device), surface_(surface), tolerance_(tolerance), looking_seconds_(looking_seconds) {
+    : device_(device),
+      surface_(surface),
+      tolerance_(tolerance),
+      looking_seconds_(looking_seconds),
+      store_(std::make_shared<PyramidStore>(device, surface,
+                                            pyramid_levels_bytes(surface.width(), surface.height()),
+                                            device.wave_form(), PyramidSettings{}.batch_queries)) {
   if (!(tolerance >= kLeastTolerance))
     throw UsageError(
         fmt::format("tolerance {}: auto keeps {} or more; for less use triangles (1e-4) or reference",
@@ -155,6 +167,11 @@ void AutoEvaluator::calibrate(const CalibrationSample& sample) {
   flops_counter_.reset(), elements_counter_.reset();
   for (Candidate& candidate : candidates_)
     if (!is_chosen(candidate)) candidate.built.reset();
+  std::set<double> cell_widths;
+  for (const auto& [kind, candidate] : candidate_of_)
+    if (candidates_[candidate].method == Method::pyramid)
+      cell_widths.insert(cell_width(kind.roughness, candidates_[candidate].precision));
+  store_->keep(cell_widths);
 }
 
 bool AutoEvaluator::is_chosen(const Candidate& candidate) const {
@@ -261,7 +278,7 @@ double AutoEvaluator::error_estimate(const Query& query, double density) const {
 }
 
 Evaluator* AutoEvaluator::evaluator(Candidate* candidate) {
-  if (!candidate->built) candidate->built = candidate->make(device_, surface_);
+  if (!candidate->built) candidate->built = candidate->make(device_, surface_, store_);
   return candidate->built.get();
 }
 
@@ -292,21 +309,21 @@ std::unique_ptr<PendingDensities> AutoEvaluator::start(const std::vector<Query>&
 }
 
 std::size_t AutoEvaluator::device_bytes() const {
-  std::size_t bytes = 0;
+  std::size_t bytes = store_->device_bytes();
   for (const Candidate& candidate : candidates_)
     if (candidate.built) bytes += candidate.built->device_bytes();
   return bytes;
 }
 
 double AutoEvaluator::build_seconds() const {
-  double seconds = 0;
+  double seconds = store_->build_seconds();
   for (const Candidate& candidate : candidates_)
     if (candidate.built) seconds += candidate.built->build_seconds();
   return seconds;
 }
 
 double AutoEvaluator::device_seconds() const {
-  double seconds = 0;
+  double seconds = store_->device_seconds();
   for (const Candidate& candidate : candidates_)
     if (candidate.built) seconds += candidate.built->device_seconds();
   return seconds;

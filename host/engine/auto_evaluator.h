@@ -13,6 +13,7 @@
 namespace mica {
 
 class PyramidEvaluator;
+class PyramidStore;
 
 /// Queries that are alike: footprints of one octave, roughnesses of half an octave.
 struct QueryClass {
@@ -103,6 +104,7 @@ class AutoEvaluator : public Evaluator {
   Device& device_;
   const Surface& surface_;
   double tolerance_, looking_seconds_;
+  std::shared_ptr<PyramidStore> store_;  ///< of the candidates that are pyramids
   std::vector<Candidate> candidates_;
   std::unique_ptr<Evaluator> flops_counter_, elements_counter_;  // while it calibrates
   std::map<QueryClass, std::size_t> candidate_of_;
