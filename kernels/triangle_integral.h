@@ -123,6 +123,7 @@ static inline void integrate_triangle_pairs(affine_residual a, affine_residual b
     accumulate(&out->total, wave_select(zero, sum, valid));
     return;
   }
+  if (MICA_COUNT_FLOPS) accumulate(&out->total, wave_select(zero, COUNTED(400, longest), valid));  // of what follows
   whitened_triangle u = whiten(a), v = whiten(b);
   u.q_plane = wave_select(cutoff + zero, min(u.q_plane, cutoff), valid);
   v.q_plane = wave_select(cutoff + zero, min(v.q_plane, cutoff), valid);

@@ -43,6 +43,8 @@ const std::array<PyramidCandidate, 8> kPyramids = {{{{std::sqrt(8.0), 2, 5e-2}, 
                                                     {{std::sqrt(0.5), 1, 1e-3}, 1e-4},
                                                     {{std::sqrt(0.125), 0.75, 1e-4}, 0}}};
 
+constexpr std::size_t kPrecisePyramid = 6;  // of these: precise enough to stand for `triangles`
+
 /// Fewer do not tell a bound.
 constexpr std::size_t kFewestSamples = 16;
 /// A candidate is judged by the first so many of a class's samples, and by more only while these cannot tell;
@@ -110,11 +112,13 @@ AutoEvaluator::AutoEvaluator(Device& device, const Surface& surface, double tole
         fmt::format("tolerance {}: auto keeps {} or more; for less use triangles (1e-4) or reference",
                     tolerance, kLeastTolerance));
   // Of each method from the cheapest to the most precise.
-  for (const auto& [precision, least_error] : kPyramids)
+  for (const auto& [precision, least_error] : kPyramids) {
+    if (&precision == &kPyramids[kPrecisePyramid].precision) precise_pyramid_ = candidates_.size();
     if (tolerance > least_error)
       candidates_.push_back({Method::pyramid, 0, precision,
                              fmt::format("pyramid, blocks of {:.2g} footprints, cells of {:.2g} roughnesses",
                                          precision.block_ratio, precision.cell_ratio)});
+  }
   if (surface.interpolation() != Interpolation::bicubic)
     for (const int elements : {1, 2, 4})
       candidates_.push_back(
@@ -190,7 +194,9 @@ AutoChoice AutoEvaluator::choose(const QueryClass& kind, Samples samples) {
   samples.counted = affordable(kCountingSeconds, 2, 64);
   if (samples.counted > 2) best.cost = cost(triangles, samples.queries, samples.counted);
   samples.most = affordable(looking_seconds_, kFewestSamples, kLooks.back());
+  samples.reference = triangles, samples.reference_error = kTrianglesError;
   extend(evaluator(triangles), samples.queries, std::min(kFewestSamples, samples.most), &samples.expected);
+  if (samples.most < kLooks[1] && samples.most < samples.queries.size()) refer_to_pyramid(&samples);
   candidate_of_[kind] = candidates_.size() - 1;
   for (const Method method : {Method::pyramid, Method::gaussians}) {
     for (std::size_t n = 0; n + 1 < candidates_.size() && samples.most >= kFewestSamples; ++n) {
@@ -205,6 +211,20 @@ AutoChoice AutoEvaluator::choose(const QueryClass& kind, Samples samples) {
   best.samples = best.samples == 0 ? samples.expected.size() : best.samples;
   best.typical_density = typical_density(samples.expected);
   return best;
+}
+
+void AutoEvaluator::refer_to_pyramid(Samples* samples) {
+  constexpr double largest_share = 0.25;  // of the tolerance
+  Candidate* const precise = &candidates_[precise_pyramid_];
+  if (samples->expected.size() < kFewestSamples || !pyramid(precise)->choose(samples->queries.front()))
+    return;
+  std::vector<float> densities;
+  extend(evaluator(precise), samples->queries, samples->expected.size(), &densities);
+  const double error = sampled_error(densities, samples->expected, kQuantile).upper_bound + kTrianglesError;
+  if (error > largest_share * tolerance_) return;
+  samples->reference = precise, samples->reference_error = error;
+  samples->expected = std::move(densities);
+  samples->most = std::min(kLooks[2], samples->queries.size());
 }
 
 AutoEvaluator::Verdict AutoEvaluator::judge(Candidate* candidate, Samples* samples, AutoChoice* choice) {
@@ -223,20 +243,21 @@ AutoEvaluator::Verdict AutoEvaluator::judge(Candidate* candidate, Samples* sampl
   std::vector<float> densities;
   for (const std::size_t look : kLooks) {
     const std::size_t count = std::min(look, samples->most);
-    extend(evaluator(&candidates_.back()), samples->queries, count, &samples->expected);
+    extend(evaluator(samples->reference), samples->queries, count, &samples->expected);
     extend(built, samples->queries, count, &densities);
     const SampledError error = sampled_error(
         densities,
         {samples->expected.begin(), samples->expected.begin() + static_cast<std::ptrdiff_t>(count)},
         kQuantile);
     const bool last = count == samples->most;
-    if ((look > kFewestSamples || last) && error.upper_bound + kTrianglesError <= tolerance_) {
+    const double upper_bound = error.upper_bound + samples->reference_error;
+    if ((look > kFewestSamples || last) && upper_bound <= tolerance_) {
       choice->samples = count, choice->cost = cost_of_query;
       choice->relative_l2 = error.relative_l2;
-      choice->upper_bound = error.upper_bound + kTrianglesError;  // and what triangles are off by
+      choice->upper_bound = upper_bound;
       return Verdict::keeps;
     }
-    if (error.lower_bound > tolerance_ || last) break;
+    if (error.lower_bound > tolerance_ + samples->reference_error || last) break;
   }
   return Verdict::breaks;
 }

@@ -85,14 +85,18 @@ class AutoEvaluator : public Evaluator {
   /// Queries of a class in random order, and the densities of those looked at so far.
   struct Samples {
     const std::vector<Query>& queries;
-    double in_job = 0;        ///< queries of the class that the job has
-    std::size_t counted = 0;  ///< of them that costs are told from
-    std::size_t most = 0;     ///< that errors may be told from
+    double in_job = 0;               ///< queries of the class that the job has
+    std::size_t counted = 0;         ///< of them that costs are told from
+    std::size_t most = 0;            ///< that errors may be told from
+    Candidate* reference = nullptr;  ///< what they are compared with
+    double reference_error = 0;      ///< upper bound of its relative L2
     std::vector<float> expected = {};
   };
   enum class Verdict { keeps, breaks, costs_more };
 
   AutoChoice choose(const QueryClass& kind, Samples samples);
+  /// Compares with a precise pyramid in place of triangles, where these show that it is precise.
+  void refer_to_pyramid(Samples* samples);
   /// @param choice its cost is the one to beat, and then the candidate's; and its error.
   Verdict judge(Candidate* candidate, Samples* samples, AutoChoice* choice);
   /// Nanoseconds of a core that a query takes, by the first `count`.
@@ -106,6 +110,7 @@ class AutoEvaluator : public Evaluator {
   double tolerance_, looking_seconds_;
   std::shared_ptr<PyramidStore> store_;  ///< of the candidates that are pyramids
   std::vector<Candidate> candidates_;
+  std::size_t precise_pyramid_ = 0;                              ///< of these
   std::unique_ptr<Evaluator> flops_counter_, elements_counter_;  // while it calibrates
   std::map<QueryClass, std::size_t> candidate_of_;
   std::vector<AutoChoice> choices_;

@@ -13,16 +13,16 @@ double blocks_reached(const Query& query, int map_width, int map_height) {
 }
 
 CostModel gaussians_cost(int elements) {
-  if (elements == 1) return {506, 430, 0.948, 50};
-  if (elements == 2) return {337, 958, 2.48, 100};
-  return {0, 1220, 9.91, 300};
+  if (elements == 1) return {380, 221, 1.03, 50};
+  if (elements == 2) return {0, 612, 2.64, 100};
+  return {0, 820, 9.85, 300};
 }
 CostModel triangles_cost(Interpolation interpolation) {
-  if (interpolation == Interpolation::nearest) return {0, 657, 0.0241, 20};
-  return {0, 1140, 0.0187, 20};
+  if (interpolation == Interpolation::nearest) return {0, 451, 0.0159, 20};
+  return {0, 879, 0.0139, 20};
 }
 CostModel pyramid_cost() {
-  return {428, 0, 1.31, 300};
+  return {365, 0, 1.42, 300};
 }
 
 }  // namespace mica

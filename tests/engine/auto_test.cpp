@@ -106,6 +106,24 @@ TEST(Auto, LooksAtMoreSamplesWhereFewCannotTell) {
   EXPECT_NE(hasty.evaluator, loose.evaluator);
 }
 
+/// Where triangles are affordable for a handful of wide footprints only, a precise pyramid tells more.
+TEST(Auto, LooksAtManyWideFootprintsByAPrecisePyramid) {
+  const Surface surface = spectrum();
+  std::vector<Query> queries = mixed_queries(surface, 3 * 1024, 15);
+  for (std::size_t n = 0; n < 1024; ++n) queries[n] = queries[3 * n + 2];
+  queries.resize(1024);
+  AutoEvaluator chooser(device(), surface, 0.01, 1e-9);
+  chooser.calibrate({queries});
+  const AutoChoice choice = chooser.choices().front();
+  EXPECT_EQ(choice.evaluator.substr(0, 7), "pyramid");
+  EXPECT_GE(choice.samples, 256u);
+  const std::vector<float> expected = make_evaluator("triangles", device(), surface)->evaluate(queries);
+  const double error = relative_l2(chooser.evaluate(queries), {expected.begin(), expected.end()});
+  std::printf("%s: %.2f%%, at most %.2f%%\n", choice.evaluator.c_str(), 100 * error,
+              100 * choice.upper_bound);
+  EXPECT_LE(error, choice.upper_bound);
+}
+
 /// The first samples show more than a tolerance that is kept: they cannot tell either.
 TEST(Auto, LooksAtMoreSamplesWhereFewShowTooMuch) {
   const Surface surface = spectrum();
