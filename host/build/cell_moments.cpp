@@ -10,15 +10,22 @@ namespace {
 
 /// Normals may change by this much, in cells, over a piece of a triangle.
 constexpr double kPieceCells = 1.0;
-/// A triangle is cut into at most the square of this. Where normals change faster they are spread so thin
-/// that their peaks' shape does not matter.
+/// A triangle is cut into at most the square of this many pieces alike. Where normals change faster, or
+/// hardly along one side, as beside an edge or a scratch, it is cut into strips along that side, and these
+/// into pieces.
 constexpr int kMostCuts = 8;
+constexpr int kMostStrips = 32;
 
 constexpr int kBicubicParts = 4;  // a texel and axis
 
 /// Of the block's mean, the weight that a light cell has at most: on noise a fifth of the cells, and 2% of
 /// the weight.
 constexpr double kLight = 0.2;
+
+/// 18 times the covariance of a uniform triangle with these two edges.
+Eigen::Matrix4d edge_products(const Eigen::Vector4d& ab, const Eigen::Vector4d& ac) {
+  return ab * ab.transpose() + ac * ac.transpose() - 0.5 * (ab * ac.transpose() + ac * ab.transpose());
+}
 
 /// Of the cells around `part` that are not empty, the one with the nearest mean normal; null without any.
 CellMoments* nearest_neighbour(const NormalCells& cells, const CellMoments& part,
@@ -111,20 +118,51 @@ void BlockMoments::add_square(const Eigen::Vector2d& corner, const Eigen::Vector
   at(cells_.cell_of(normal.x(), normal.y())).add(1, mean, variances.asDiagonal());
 }
 
+void BlockMoments::add_piece(const Eigen::Vector4d& a, const Eigen::Vector4d& b, const Eigen::Vector4d& c) {
+  const Eigen::Vector4d ab = b - a, ac = c - a, mean = (a + b + c) / 3;
+  const double weight = 0.5 * std::abs(ab.x() * ac.y() - ab.y() * ac.x());
+  at(cells_.cell_of(mean[2], mean[3])).add_weighted(weight, mean, weight / 18.0 * edge_products(ab, ac));
+}
+
+void BlockMoments::add_strips(const Eigen::Vector4d& apex, const Eigen::Vector4d& b, const Eigen::Vector4d& c,
+                              int strips, int cuts) {
+  const Eigen::Vector4d to_b = (b - apex) / strips, along = (c - b) / strips;
+  for (int strip = 0; strip < strips; ++strip) {
+    // A strip's sides are `strip` and `strip + 1` times `along`, and it has as many cuts as its part of the
+    // side.
+    const int count = (cuts * (strip + 1) + strips - 1) / strips;
+    const Eigen::Vector4d near = apex + strip * to_b, far = near + to_b;
+    const Eigen::Vector4d near_step = strip * along / count, far_step = (strip + 1) * along / count;
+    for (int cut = 0; cut < count; ++cut) {
+      const Eigen::Vector4d near_left = near + cut * near_step, far_left = far + cut * far_step;
+      add_piece(near_left, far_left, far_left + far_step);
+      if (strip > 0) add_piece(near_left, far_left + far_step, near_left + near_step);
+    }
+  }
+}
+
 /// A uniform triangle's covariance is a twelfth of its corners' products about their mean; n^2 pieces alike
 /// have an n^2th of it each.
 void BlockMoments::add_triangle(const Eigen::Vector4d& a, const Eigen::Vector4d& b,
                                 const Eigen::Vector4d& c) {
   const Eigen::Vector4d ab = b - a, ac = c - a;
-  const double change = std::max({ab.tail<2>().cwiseAbs().maxCoeff(), ac.tail<2>().cwiseAbs().maxCoeff(),
-                                  (ac - ab).tail<2>().cwiseAbs().maxCoeff()});
-  const int n = static_cast<int>(
-      std::clamp(std::ceil(change / (kPieceCells * cells_.width())), 1.0, static_cast<double>(kMostCuts)));
+  const auto pieces = [&](const Eigen::Vector4d& edge) {
+    return edge.tail<2>().cwiseAbs().maxCoeff() / (kPieceCells * cells_.width());
+  };
+  const double pieces_ab = pieces(ab), pieces_ac = pieces(ac), pieces_bc = pieces(ac - ab);
+  const double least = std::min({pieces_ab, pieces_ac, pieces_bc}),
+               most = std::ceil(std::max({pieces_ab, pieces_ac, pieces_bc}));
+  if (most > kMostCuts || (least <= 1 && most > 2)) {
+    const int strips = static_cast<int>(std::min<double>(most, kMostStrips)),
+              cuts = static_cast<int>(std::clamp<double>(std::ceil(least), 1, kMostCuts));
+    if (least == pieces_ab) return add_strips(c, a, b, strips, cuts);
+    if (least == pieces_ac) return add_strips(b, a, c, strips, cuts);
+    return add_strips(a, b, c, strips, cuts);
+  }
+  const int n = static_cast<int>(std::max(most, 1.0));
   const double area = 0.5 * std::abs(ab.x() * ac.y() - ab.y() * ac.x());
-  const Eigen::Matrix4d products =
-      ab * ab.transpose() + ac * ac.transpose() - 0.5 * (ab * ac.transpose() + ac * ab.transpose());
   const double weight = area / (n * n);
-  const Eigen::Matrix4d weighted_covariance = weight / (18.0 * n * n) * products;
+  const Eigen::Matrix4d weighted_covariance = weight / (18.0 * n * n) * edge_products(ab, ac);
   for (int row = 0; row < n; ++row) {
     for (int column = 0; column + row < n; ++column) {
       const auto add = [&](double third) {  // of a piece's edges from the corner to the piece's mean

@@ -44,6 +44,11 @@ class BlockMoments {
   std::vector<CellMoments> base_block(int first_i, int first_j, int size);
   void add_texel(long i, long j);
   void add_triangle(const Eigen::Vector4d& a, const Eigen::Vector4d& b, const Eigen::Vector4d& c);
+  /// One of its pieces, with one normal for all of it.
+  void add_piece(const Eigen::Vector4d& a, const Eigen::Vector4d& b, const Eigen::Vector4d& c);
+  /// A triangle in strips along the side from b to c, and these in up to so many cuts.
+  void add_strips(const Eigen::Vector4d& apex, const Eigen::Vector4d& b, const Eigen::Vector4d& c, int strips,
+                  int cuts);
   void add_square(const Eigen::Vector2d& corner, const Eigen::Vector2d& normal);
   Moments& at(int cell);
   std::vector<CellMoments> take();

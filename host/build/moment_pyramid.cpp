@@ -143,22 +143,24 @@ void build_moment_pyramid(const Surface& surface, const PyramidLevels& levels,
   }
 }
 
-double estimate_elements(const Surface& surface, const PyramidLevels& levels, int block) {
+ElementCounts estimate_elements(const Surface& surface, double cell_width, int block) {
   const int samples = std::clamp(kSampledTexels / block, 1, 8);  // a side: blocks spread over the map
-  const NormalCells cells(surface, levels.cell_width);
+  const NormalCells cells(surface, cell_width);
   const int columns = (surface.width() + block - 1) / block, rows = (surface.height() + block - 1) / block;
   const int sampled_columns = std::min(columns, samples), sampled_rows = std::min(rows, samples);
-  std::vector<std::size_t> counts(static_cast<std::size_t>(sampled_columns) * sampled_rows);
+  std::vector<ElementCounts> counts(static_cast<std::size_t>(sampled_columns) * sampled_rows);
   ThreadMoments moments([&] { return BlockMoments(surface, cells); });
   tbb::parallel_for(std::size_t{0}, counts.size(), [&](std::size_t n) {
     const int column = static_cast<int>(n % sampled_columns) * columns / sampled_columns;
     const int row = static_cast<int>(n / sampled_columns) * rows / sampled_rows;
     std::vector<CellMoments> parts = moments.local().block(column * block, row * block, block);
-    counts[n] = (levels.compact ? without_light_cells(cells, std::move(parts)) : parts).size();
+    counts[n].whole = static_cast<double>(parts.size());
+    counts[n].compact = static_cast<double>(without_light_cells(cells, std::move(parts)).size());
   });
-  double sum = 0;
-  for (const std::size_t count : counts) sum += static_cast<double>(count);
-  return sum / static_cast<double>(counts.size()) * columns * rows;
+  ElementCounts sum;
+  for (const ElementCounts& count : counts) sum.whole += count.whole, sum.compact += count.compact;
+  const double blocks_a_sample = static_cast<double>(columns) * rows / static_cast<double>(counts.size());
+  return {blocks_a_sample * sum.whole, blocks_a_sample * sum.compact};
 }
 
 namespace {
@@ -186,15 +188,15 @@ class LevelEstimates {
 
  private:
   double elements(int block, bool compact) {
-    const auto [found, added] = elements_.try_emplace({block, compact}, 0.0);
-    if (added) found->second = estimate_elements(surface_, {cell_width_, block, compact}, block);
-    return found->second;
+    const auto [found, added] = elements_.try_emplace(block);
+    if (added) found->second = estimate_elements(surface_, cell_width_, block);
+    return compact ? found->second.compact : found->second.whole;
   }
 
   const Surface& surface_;
   double cell_width_;
   int size_;
-  std::map<std::pair<int, bool>, double> elements_;
+  std::map<int, ElementCounts> elements_;
 };
 
 }  // namespace

@@ -57,6 +57,9 @@ void build_moment_pyramid(const Surface& surface, const PyramidLevels& levels,
                           const std::function<void(int block, PyramidLevel level)>& take);
 
 /// Elements of a level, from a sample of its blocks.
-double estimate_elements(const Surface& surface, const PyramidLevels& levels, int block);
+struct ElementCounts {
+  double whole = 0, compact = 0;
+};
+ElementCounts estimate_elements(const Surface& surface, double cell_width, int block);
 
 }  // namespace mica

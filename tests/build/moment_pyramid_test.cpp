@@ -179,7 +179,9 @@ TEST(MomentPyramid, AddsLightCellsToTheirNearestNeighbour) {
 TEST(MomentPyramid, EstimatesItsElements) {
   const Surface surface = noise(512, 512);
   const auto actual = static_cast<double>(levels(surface, 0.03, 32).at(32).elements);
-  EXPECT_NEAR(estimate_elements(surface, {0.03, 32}, 32) / actual, 1, 0.25);
+  EXPECT_NEAR(estimate_elements(surface, 0.03, 32).whole / actual, 1, 0.25);
+  const auto compact = static_cast<double>(levels(surface, 0.03, 32, true).at(32).elements);
+  EXPECT_NEAR(estimate_elements(surface, 0.03, 32).compact / compact, 1, 0.25);
 }
 
 /// The finest levels whose bytes fit, compact where others do not.
