@@ -21,6 +21,20 @@ struct Element {
 };
 using Elements = std::vector<Element>;
 
+/// Least and largest of some elements' means.
+struct MeanBox {
+  Eigen::Vector4d low, high;
+
+  MeanBox(const Element* first, std::size_t count) : low(first->mean), high(first->mean) {
+    for (std::size_t n = 1; n < count; ++n) {
+      low = low.cwiseMin(first[n].mean);
+      high = high.cwiseMax(first[n].mean);
+    }
+  }
+  Eigen::Vector4d middle() const { return 0.5 * (low + high); }
+  Eigen::Vector4d reach() const { return 0.5 * (high - low); }
+};
+
 std::size_t round_up(std::size_t n, std::size_t multiple) {
   return (n + multiple - 1) / multiple * multiple;
 }
@@ -53,13 +67,8 @@ class CompactOrder {
     sort(middle, last);
   }
   int longest_axis(std::size_t first, std::size_t last) const {
-    Eigen::Vector4d low = elements_[first].mean, high = low;
-    for (std::size_t n = first; n < last; ++n) {
-      low = low.cwiseMin(elements_[n].mean);
-      high = high.cwiseMax(elements_[n].mean);
-    }
     int axis = 0;
-    (high - low).cwiseQuotient(unit_).maxCoeff(&axis);
+    MeanBox(&elements_[first], last - first).reach().cwiseQuotient(unit_).maxCoeff(&axis);
     return axis;
   }
 
@@ -106,20 +115,6 @@ void put(Word word, int place, std::int16_t* record) {
   static_assert(sizeof word == 2 * sizeof *record);
   std::memcpy(record + 2 * place, &word, sizeof word);
 }
-
-/// Least and largest of some elements' means.
-struct MeanBox {
-  Eigen::Vector4d low, high;
-
-  MeanBox(const Element* first, std::size_t count) : low(first->mean), high(first->mean) {
-    for (std::size_t n = 1; n < count; ++n) {
-      low = low.cwiseMin(first[n].mean);
-      high = high.cwiseMax(first[n].mean);
-    }
-  }
-  Eigen::Vector4d middle() const { return 0.5 * (low + high); }
-  Eigen::Vector4d reach() const { return 0.5 * (high - low); }
-};
 
 /// Writes up to sixteen elements; missing ones get no weight.
 /// @tparam Number std::int16_t or std::int8_t, which the fields are of.

@@ -112,8 +112,9 @@ AutoEvaluator::AutoEvaluator(Device& device, const Surface& surface, double tole
         fmt::format("tolerance {}: auto keeps {} or more; for less use triangles (1e-4) or reference",
                     tolerance, kLeastTolerance));
   // Of each method from the cheapest to the most precise.
-  for (const auto& [precision, least_error] : kPyramids) {
-    if (&precision == &kPyramids[kPrecisePyramid].precision) precise_pyramid_ = candidates_.size();
+  for (std::size_t n = 0; n < kPyramids.size(); ++n) {
+    const auto& [precision, least_error] = kPyramids[n];
+    if (n == kPrecisePyramid) precise_pyramid_ = candidates_.size();
     if (tolerance > least_error)
       candidates_.push_back({Method::pyramid, 0, precision,
                              fmt::format("pyramid, blocks of {:.2g} footprints, cells of {:.2g} roughnesses",
@@ -178,6 +179,10 @@ void AutoEvaluator::calibrate(const CalibrationSample& sample) {
   store_->keep(cell_widths);
 }
 
+double AutoEvaluator::build_cost(const Candidate& candidate) const {
+  return candidate.cost_model(surface_).texel * surface_.width() * surface_.height();
+}
+
 bool AutoEvaluator::is_chosen(const Candidate& candidate) const {
   return std::any_of(candidate_of_.begin(), candidate_of_.end(),
                      [&](const auto& entry) { return &candidates_[entry.second] == &candidate; });
@@ -196,7 +201,9 @@ AutoChoice AutoEvaluator::choose(const QueryClass& kind, Samples samples) {
   samples.most = affordable(looking_seconds_, kFewestSamples, kLooks.back());
   samples.reference = triangles, samples.reference_error = kTrianglesError;
   extend(evaluator(triangles), samples.queries, std::min(kFewestSamples, samples.most), &samples.expected);
-  if (samples.most < kLooks[1] && samples.most < samples.queries.size()) refer_to_pyramid(&samples);
+  if (samples.most < kLooks[1] && samples.most < samples.queries.size() &&
+      samples.in_job * best.cost > build_cost(candidates_[precise_pyramid_]))
+    refer_to_pyramid(&samples);
   candidate_of_[kind] = candidates_.size() - 1;
   for (const Method method : {Method::pyramid, Method::gaussians}) {
     for (std::size_t n = 0; n + 1 < candidates_.size() && samples.most >= kFewestSamples; ++n) {
@@ -232,8 +239,7 @@ AutoEvaluator::Verdict AutoEvaluator::judge(Candidate* candidate, Samples* sampl
     return Verdict::breaks;  // it would only pass them on to the texels
   const CostModel model = candidate->cost_model(surface_);
   const int width = surface_.width(), height = surface_.height();
-  const double build = model.texel * static_cast<double>(width) * height;
-  if (!is_chosen(*candidate) && samples->in_job * choice->cost < build)
+  if (!is_chosen(*candidate) && samples->in_job * choice->cost < build_cost(*candidate))
     return Verdict::costs_more;  // others have answered by the time that it is built
   if (!(model.of(blocks_reached(samples->queries.front(), width, height), 0) < choice->cost))
     return Verdict::costs_more;  // whatever would be counted

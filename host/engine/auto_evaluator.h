@@ -101,6 +101,7 @@ class AutoEvaluator : public Evaluator {
   Verdict judge(Candidate* candidate, Samples* samples, AutoChoice* choice);
   /// Nanoseconds of a core that a query takes, by the first `count`.
   double cost(Candidate* candidate, const std::vector<Query>& queries, std::size_t count);
+  double build_cost(const Candidate& candidate) const;  ///< core nanoseconds
   bool is_chosen(const Candidate& candidate) const;
   Evaluator* evaluator(Candidate* candidate);
   PyramidEvaluator* pyramid(Candidate* candidate);  ///< the same, of one that is a pyramid

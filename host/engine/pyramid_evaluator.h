@@ -18,7 +18,7 @@ struct PyramidSettings {
   std::optional<std::size_t> levels_bytes;  ///< of a roughness's levels; default: pyramid_levels_bytes
   std::size_t batch_queries = 1 << 17;      ///< queries a launch, at most
   std::optional<WaveForm> wave_form;        ///< default: what suits the device
-  std::shared_ptr<PyramidStore> store;      ///< of levels, for several evaluators; default: its own
+  std::shared_ptr<PyramidStore> store;      ///< of levels, whose settings then count; default: its own
 };
 
 /// `pyramid`: merged elements, whose number does not grow with the footprint; kernels/pyramid.cl. Levels are
