@@ -2,15 +2,12 @@
 
 #include <cmath>
 
-#include "host/engine/accuracy.h"
+#include "host/base/constants.h"
 #include "host/surface/random.h"
+#include "host/verify/accuracy.h"
 
 namespace mica::bench {
-namespace {
-
-constexpr double kPi = 3.14159265358979323846;
-
-}  // namespace
+namespace {}  // namespace
 
 Surface make_named(const std::string& name) {
   SurfaceDescription description;

@@ -11,9 +11,9 @@
 
 #include "host/base/error.h"
 #include "host/base/stopwatch.h"
-#include "host/bench/coherent.h"
-#include "host/engine/cavity_brdf.h"
-#include "host/engine/make_patch_brdf.h"
+#include "host/measure/coherent.h"
+#include "host/methods/cavities/cavity_brdf.h"
+#include "host/methods/make_patch_brdf.h"
 
 namespace mica::bench {
 namespace {

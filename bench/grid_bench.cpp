@@ -12,8 +12,8 @@
 #include <optional>
 
 #include "host/base/error.h"
-#include "host/bench/fma_peak.h"
-#include "host/engine/grid_evaluator.h"
+#include "host/measure/fma_peak.h"
+#include "host/methods/grid/grid_evaluator.h"
 
 namespace mica::bench {
 namespace {

@@ -14,14 +14,14 @@
 #include "bench/bench_maps.h"
 #include "host/base/error.h"
 #include "host/base/stopwatch.h"
-#include "host/bench/coherent.h"
-#include "host/engine/accuracy.h"
-#include "host/engine/auto_evaluator.h"
-#include "host/engine/make_evaluator.h"
-#include "host/engine/mixture_evaluator.h"
-#include "host/engine/pyramid_evaluator.h"
-#include "host/engine/sampled_error.h"
-#include "host/engine/triangle_evaluator.h"
+#include "host/measure/coherent.h"
+#include "host/methods/auto/auto_evaluator.h"
+#include "host/methods/auto/sampled_error.h"
+#include "host/methods/gaussians/mixture_evaluator.h"
+#include "host/methods/make_evaluator.h"
+#include "host/methods/pyramid/pyramid_evaluator.h"
+#include "host/methods/triangles/triangle_evaluator.h"
+#include "host/verify/accuracy.h"
 
 namespace mica::bench {
 namespace {

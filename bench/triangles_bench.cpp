@@ -11,9 +11,9 @@
 #include "bench/paper_recursion.h"
 #include "host/base/error.h"
 #include "host/base/stopwatch.h"
-#include "host/bench/coherent.h"
-#include "host/bench/fma_peak.h"
-#include "host/engine/triangle_evaluator.h"
+#include "host/measure/coherent.h"
+#include "host/measure/fma_peak.h"
+#include "host/methods/triangles/triangle_evaluator.h"
 #include "host/reference/oracle.h"
 
 namespace mica::bench {

@@ -1,12 +1,12 @@
-# Writes OUTPUT: a C++ source with the text of every file of kernels/, found by name at run time.
+# Writes OUTPUT: a C++ source with the text of every file of kernels/, found by its path there at run time.
 #   cmake -DKERNELS=dir -DOUTPUT=file.cpp -P EmbedKernels.cmake
-file(GLOB files ${KERNELS}/*.cl ${KERNELS}/*.h)
+file(GLOB_RECURSE files ${KERNELS}/*.cl ${KERNELS}/*.h)
 list(SORT files)
 set(text "// Generated from kernels/ by cmake/EmbedKernels.cmake.\n#include \"host/device/kernel_sources.h\"\n\n")
 string(APPEND text "namespace mica {\n\nconst std::map<std::string, std::string>& kernel_sources() {\n")
 string(APPEND text "  static const std::map<std::string, std::string> sources = {\n")
 foreach(file ${files})
-  get_filename_component(name ${file} NAME)
+  file(RELATIVE_PATH name ${KERNELS} ${file})
   file(READ ${file} content)
   string(APPEND text "      {\"${name}\", R\"kernel(${content})kernel\"},\n")
 endforeach()

@@ -20,8 +20,8 @@ function(lint_target name)
 endfunction()
 
 # Each kernel file in every variant that the host may ask for, and each header alone in both forms of a wave.
-file(GLOB kernel_programs CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/kernels/*.cl)
-file(GLOB kernel_headers CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/kernels/*.h)
+file(GLOB_RECURSE kernel_programs CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/kernels/*.cl)
+file(GLOB_RECURSE kernel_headers CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/kernels/*.h)
 set(compile_kernel ${CLANG} -x cl -cl-std=CL1.2 -fsyntax-only -Wall -Wextra -Werror -Xclang -finclude-default-header
                    -I ${CMAKE_SOURCE_DIR}/kernels)
 set(kernel_stamps)
@@ -57,7 +57,7 @@ lint_target(lint_kernels ${kernel_stamps})
 file(GLOB_RECURSE cpp_sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/host/*.cpp)
 file(GLOB_RECURSE cpp_headers CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/host/*.h)
 file(GLOB_RECURSE cpp_others CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/tests/*.cpp ${CMAKE_SOURCE_DIR}/tests/*.h
-     ${CMAKE_SOURCE_DIR}/bench/*.cpp ${CMAKE_SOURCE_DIR}/bench/*.h)
+     ${CMAKE_SOURCE_DIR}/bench/*.cpp ${CMAKE_SOURCE_DIR}/bench/*.h ${CMAKE_SOURCE_DIR}/tools/*.cpp)
 
 set(format_stamp ${CMAKE_BINARY_DIR}/lint/format)
 add_custom_command(

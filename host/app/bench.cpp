@@ -5,20 +5,20 @@
 #include "host/app/interrupt.h"
 #include "host/app/output.h"
 #include "host/base/stopwatch.h"
-#include "host/bench/suite.h"
 #include "host/image/image.h"
+#include "host/measure/suite.h"
 #include "host/report/bench_report.h"
 
 namespace mica::app {
 namespace {
 
-struct Options {
+struct BenchOptions {
   std::string suite = "quick", json, html;
   int device = 0;
   bool quiet = false;
 };
 
-int run(const Options& options) {
+int run(const BenchOptions& options) {
   for (const std::string& path : {options.json, options.html})
     if (!path.empty()) prepare_output(path);
   Device device(options.device);
@@ -37,7 +37,7 @@ int run(const Options& options) {
 }  // namespace
 
 void add_bench(CLI::App& app, Command* chosen) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<BenchOptions>();
   CLI::App* command =
       app.add_subcommand("bench", "Measures every evaluator's speed and error, side by side in one run");
   command->footer(

@@ -5,16 +5,16 @@
 
 #include "host/app/commands.h"
 #include "host/app/output.h"
-#include "host/engine/estimate.h"
-#include "host/engine/plan.h"
 #include "host/image/image.h"
 #include "host/job/job.h"
+#include "host/render/estimate.h"
+#include "host/render/plan.h"
 #include "host/report/report.h"
 
 namespace mica::app {
 namespace {
 
-struct Options {
+struct CheckOptions {
   std::string job, json;
   std::vector<std::string> overrides;
   int device = 0;
@@ -30,7 +30,7 @@ std::optional<Estimate> try_estimate(const Job& job, const Plan& plan, int devic
   return estimate(job, plan, device);
 }
 
-int run(const Options& options) {
+int run(const CheckOptions& options) {
   const Job job = load_job(options.job, options.overrides);
   const Plan plan = make_plan(job);
   if (!options.json.empty()) prepare_output(options.json);
@@ -46,7 +46,7 @@ int run(const Options& options) {
 }  // namespace
 
 void add_check(CLI::App& app, Command* chosen) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CheckOptions>();
   CLI::App* command = app.add_subcommand("check", "Validate a job and print its plan; render nothing");
   command->add_option("job", options->job, "Job file, TOML")->required();
   command->add_option("--set", options->overrides, "Override a setting: key.path=value, as often as needed");

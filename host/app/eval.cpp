@@ -13,12 +13,12 @@
 #include "host/app/json_file.h"
 #include "host/app/map_options.h"
 #include "host/app/output.h"
-#include "host/app/query_table.h"
 #include "host/base/error.h"
-#include "host/engine/cavity_brdf.h"
-#include "host/engine/make_patch_brdf.h"
-#include "host/engine/map_query.h"
 #include "host/image/image.h"
+#include "host/methods/cavities/cavity_brdf.h"
+#include "host/methods/make_patch_brdf.h"
+#include "host/methods/map/map_query.h"
+#include "host/tables/query_table.h"
 
 namespace mica::app {
 namespace {

@@ -11,13 +11,13 @@
 #include "host/app/evaluation.h"
 #include "host/app/json_file.h"
 #include "host/app/output.h"
-#include "host/app/patch_table.h"
 #include "host/base/error.h"
 #include "host/base/stopwatch.h"
-#include "host/engine/cavity_brdf.h"
-#include "host/engine/grid_brdf.h"
-#include "host/engine/make_patch_brdf.h"
 #include "host/image/image.h"
+#include "host/methods/cavities/cavity_brdf.h"
+#include "host/methods/grid/grid_brdf.h"
+#include "host/methods/make_patch_brdf.h"
+#include "host/tables/patch_table.h"
 
 namespace mica::app {
 namespace {

@@ -13,9 +13,9 @@
 #include "host/app/interrupt.h"
 #include "host/app/progress.h"
 #include "host/base/error.h"
-#include "host/engine/auto_evaluator.h"
-#include "host/engine/grid_evaluator.h"
-#include "host/engine/make_evaluator.h"
+#include "host/methods/auto/auto_evaluator.h"
+#include "host/methods/grid/grid_evaluator.h"
+#include "host/methods/make_evaluator.h"
 #include "host/reference/oracle.h"
 
 namespace mica::app {

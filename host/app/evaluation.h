@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "host/device/device.h"
-#include "host/engine/evaluator.h"
-#include "host/engine/grid_query.h"
+#include "host/methods/evaluator.h"
+#include "host/methods/grid/grid_query.h"
 #include "host/surface/surface.h"
 
 namespace mica::app {

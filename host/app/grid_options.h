@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "host/engine/grid_query.h"
+#include "host/methods/grid/grid_query.h"
 #include "host/scene/glints_description.h"
 
 namespace mica::app {

@@ -10,7 +10,7 @@ namespace mica::app {
 /// What a device reports of itself.
 nlohmann::json describe_device(const DeviceInfo& info);
 
-/// "vectors" or "items": how kernels spread a wave's lanes on such a device; see kernels/wave.h.
+/// "vectors" or "items": how kernels spread a wave's lanes on such a device; see kernels/wave/wave.h.
 std::string wave_form_name(const DeviceInfo& info);
 
 /// Writes whole or not at all, with the program's name and version in front. Throws FileError.

@@ -13,11 +13,11 @@
 #include "host/app/map_options.h"
 #include "host/app/ndf_images.h"
 #include "host/app/output.h"
-#include "host/app/query_table.h"
 #include "host/base/error.h"
 #include "host/base/version.h"
-#include "host/engine/map_query.h"
 #include "host/image/image.h"
+#include "host/methods/map/map_query.h"
+#include "host/tables/query_table.h"
 
 namespace mica::app {
 namespace {

@@ -8,9 +8,9 @@
 #include "host/app/interrupt.h"
 #include "host/app/progress.h"
 #include "host/base/stopwatch.h"
-#include "host/engine/auto_evaluator.h"
-#include "host/engine/pyramid_painter.h"
-#include "host/engine/triangle_evaluator.h"
+#include "host/methods/auto/auto_evaluator.h"
+#include "host/methods/pyramid/pyramid_painter.h"
+#include "host/methods/triangles/triangle_evaluator.h"
 
 namespace mica::app {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "host/app/evaluation.h"
-#include "host/engine/image_window.h"
+#include "host/methods/map/image_window.h"
 
 namespace mica::app {
 

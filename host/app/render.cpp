@@ -11,14 +11,14 @@
 #include "host/app/output.h"
 #include "host/app/progress.h"
 #include "host/base/error.h"
-#include "host/engine/render.h"
 #include "host/job/job.h"
+#include "host/render/render.h"
 #include "host/report/report.h"
 
 namespace mica::app {
 namespace {
 
-struct Options {
+struct RenderOptions {
   std::string job, output, json, frames;
   std::vector<std::string> overrides;
   int device = 0;
@@ -29,7 +29,7 @@ struct Options {
 struct OutputNames {
   std::string exr, png;
 };
-OutputNames output_names(const Options& options) {
+OutputNames output_names(const RenderOptions& options) {
   namespace fs = std::filesystem;
   const fs::path wanted = options.output.empty()
                               ? fs::path("out") / fs::path(options.job).stem().concat(".exr")
@@ -49,7 +49,7 @@ OutputNames names_of_frame(const OutputNames& names, const Job& job, int frame) 
 /// Renders the frames of a job one after the other, and keeps on when one fails.
 class FrameLoop {
  public:
-  FrameLoop(const Options& options, const Job& job, const OutputNames& names, const DeviceInfo& device)
+  FrameLoop(const RenderOptions& options, const Job& job, const OutputNames& names, const DeviceInfo& device)
       : options_(options), job_(job), names_(names), device_(device) {}
 
   void render(BuiltJob& built, int frame) {
@@ -96,7 +96,7 @@ class FrameLoop {
       if (said_.insert(warning).second) spdlog::warn("{}", warning);
   }
 
-  const Options& options_;
+  const RenderOptions& options_;
   const Job& job_;
   const OutputNames& names_;
   const DeviceInfo& device_;
@@ -106,7 +106,7 @@ class FrameLoop {
   std::optional<ExitCode> failed_;
 };
 
-int run(const Options& options) {
+int run(const RenderOptions& options) {
   const OutputNames names = output_names(options);
   Job job = load_job(options.job, options.overrides);
   choose_frames(options.frames, &job.frames);
@@ -127,7 +127,7 @@ int run(const Options& options) {
 }  // namespace
 
 void add_render(CLI::App& app, Command* chosen) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RenderOptions>();
   CLI::App* command = app.add_subcommand("render", "Render the image of a job file");
   command->add_option("job", options->job, "Job file, TOML")->required();
   command->add_option("-o,--output", options->output,

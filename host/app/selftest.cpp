@@ -6,17 +6,17 @@
 #include <cmath>
 
 #include "host/app/commands.h"
-#include "host/app/device_checks.h"
-#include "host/app/grid_checks.h"
 #include "host/app/interrupt.h"
 #include "host/app/json_file.h"
 #include "host/app/output.h"
-#include "host/app/pyramid_checks.h"
-#include "host/app/selftest_tables.h"
-#include "host/engine/accuracy.h"
-#include "host/engine/make_evaluator.h"
-#include "host/engine/mixture_evaluator.h"
+#include "host/methods/gaussians/mixture_evaluator.h"
+#include "host/methods/make_evaluator.h"
 #include "host/reference/gaussian_mixture.h"
+#include "host/verify/accuracy.h"
+#include "host/verify/device_checks.h"
+#include "host/verify/grid_checks.h"
+#include "host/verify/pyramid_checks.h"
+#include "host/verify/selftest_tables.h"
 
 namespace mica::app {
 namespace {

@@ -26,8 +26,9 @@ struct DeviceInfo {
 /// Every OpenCL device of every platform, in the loader's order; `mica devices` prints their numbers.
 std::vector<DeviceInfo> list_devices();
 
-/// How the sixteen lanes of a wave are mapped to a device; see kernels/wave.h.
+/// How the sixteen lanes of a wave are mapped to a device; see kernels/wave/wave.h.
 enum class WaveForm { vectors, items };
+constexpr std::size_t kWaveLanes = 16;
 
 /// Bytes of a device's buffers, as they come and go.
 struct BufferBytes {
@@ -51,6 +52,10 @@ class Device {
   cl::Kernel kernel(const std::string& file, const std::string& name, const std::string& options);
   cl::Kernel kernel(const std::string& file, const std::string& name, const std::string& options,
                     WaveForm form);
+  /// The kernel that has its file's name: "map/walk" is `walk` of kernels/map/walk.cl.
+  cl::Kernel kernel(const std::string& path, const std::string& options, WaveForm form) {
+    return kernel(path + ".cl", path.substr(path.rfind('/') + 1), options, form);
+  }
 
   /// An uninitialised buffer. Throws DeviceError naming `what` when it exceeds the device's limits.
   cl::Buffer buffer(std::size_t bytes, cl_mem_flags flags, const std::string& what) const;

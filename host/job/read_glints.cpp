@@ -6,12 +6,13 @@ namespace {
 constexpr std::size_t kMostColors = 8;
 
 using Mapping = GlintsDescription::Mapping;
-using Masking = GlintsDescription::Masking;
+using GlintMasking = GlintsDescription::Masking;
 
 const Choices<Distribution> distributions = {{"ggx", Distribution::trowbridge_reitz},
                                              {"beckmann", Distribution::beckmann}};
 const Choices<Mapping> mappings = {{"uv", Mapping::uv}, {"triplanar", Mapping::triplanar}};
-const Choices<Masking> maskings = {{"smith", Masking::smith}, {"cavity", Masking::cavity}};
+const Choices<GlintMasking> glint_maskings = {{"smith", GlintMasking::smith},
+                                              {"cavity", GlintMasking::cavity}};
 
 void read_textures(TableReader& table, GlintTextures& textures) {
   table.read_file("density", textures.density);
@@ -34,7 +35,7 @@ void read_glints(TableReader& material, MaterialDescription& description) {
   material.read("stretch", glints.stretch, closed(1.0 / 64, 64));
   material.read("seed", seed);
   material.read("mapping", glints.mapping, mappings);
-  material.read("masking", glints.masking, maskings);
+  material.read("masking", glints.masking, glint_maskings);
   material.read("colors", glints.colors, kMostColors, closed(0, 1));
   material.read_table("textures", [&](TableReader& table) { read_textures(table, glints.textures); });
   if (seed > 0xffffffffU) material.report("seed", "found more than 32 bits; expected a seed below 2^32");

@@ -8,6 +8,8 @@
 
 namespace mica {
 
+constexpr Interval kCoordinate = closed(-1e6, 1e6), kExtent = open_low(0, 1e6);
+
 /// The job that `text` describes. @param path names it in messages, and its folder is where file names start.
 Job read_job(const std::string& text, const std::string& path, const std::vector<std::string>& overrides);
 

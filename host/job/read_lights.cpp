@@ -6,19 +6,17 @@
 namespace mica {
 namespace {
 
-const Interval coordinate = closed(-1e6, 1e6);
 const Interval power = closed(0, 1e9);
-const Interval extent = open_low(0, 1e6);
 
 void read_direction(TableReader& light, Eigen::Vector3d& direction, std::string_view meaning) {
-  light.read("direction", direction, coordinate);
+  light.read("direction", direction, kCoordinate);
   if (direction.norm() < 1e-9) light.report("direction", meaning);
 }
 
 // What each kind of light can be told.
 
 void read_values(TableReader& light, PointLight& point) {
-  light.read("position", point.position, coordinate);
+  light.read("position", point.position, kCoordinate);
   light.read("intensity", point.intensity, power);
 }
 
@@ -29,15 +27,15 @@ void read_values(TableReader& light, DirectionalLight& directional) {
 }
 
 void read_values(TableReader& light, SphereLight& sphere) {
-  light.read("position", sphere.position, coordinate);
-  light.read("radius", sphere.radius, extent);
+  light.read("position", sphere.position, kCoordinate);
+  light.read("radius", sphere.radius, kExtent);
   light.read("intensity", sphere.intensity, power);
 }
 
 void read_values(TableReader& light, DiskLight& disk) {
-  light.read("position", disk.position, coordinate);
+  light.read("position", disk.position, kCoordinate);
   read_direction(light, disk.direction, "found no length; expected the direction that the disk faces");
-  light.read("radius", disk.radius, extent);
+  light.read("radius", disk.radius, kExtent);
   light.read("intensity", disk.intensity, power);
 }
 

@@ -7,14 +7,12 @@ namespace mica {
 namespace {
 
 // Far inside what single precision, in which rays are traced, tells apart from infinity.
-const Interval coordinate = closed(-1e6, 1e6);
-const Interval extent = open_low(0, 1e6);
 const Interval radiance = closed(0, 1e9);
 
 void read_camera(TableReader& table, CameraDescription& camera) {
-  table.read("position", camera.position, coordinate);
-  table.read("look_at", camera.look_at, coordinate);
-  table.read("up", camera.up, coordinate);
+  table.read("position", camera.position, kCoordinate);
+  table.read("look_at", camera.look_at, kCoordinate);
+  table.read("up", camera.up, kCoordinate);
   table.read("fov", camera.fov_degrees, open(0, 180));
 
   const Eigen::Vector3d forward = camera.look_at - camera.position;
@@ -29,15 +27,15 @@ using Geometry = decltype(ShapeDescription::geometry);
 
 Geometry read_sphere(TableReader& shape) {
   SphereShape sphere;
-  shape.read("center", sphere.center, coordinate);
-  shape.read("radius", sphere.radius, extent);
+  shape.read("center", sphere.center, kCoordinate);
+  shape.read("radius", sphere.radius, kExtent);
   return sphere;
 }
 
 Geometry read_shell(TableReader& shape) {
   ShellShape shell;
-  shape.read("center", shell.center, coordinate);
-  shape.read("size", shell.size, extent);
+  shape.read("center", shell.center, kCoordinate);
+  shape.read("size", shell.size, kExtent);
   shape.read("turns", shell.turns, closed(1, 12));
   return shell;
 }
@@ -53,15 +51,15 @@ Geometry read_mesh(TableReader& shape) {
 template <typename Shape>
 Geometry read_sized(TableReader& table) {
   Shape shape;
-  table.read("center", shape.center, coordinate);
-  table.read("size", shape.size, extent);
+  table.read("center", shape.center, kCoordinate);
+  table.read("size", shape.size, kExtent);
   return shape;
 }
 
 void read_placement(TableReader& shape, Placement& placement) {
   shape.read("scale", placement.scale, closed(1e-6, 1e6));
   shape.read("rotate", placement.rotate_degrees, closed(-360, 360));
-  shape.read("translate", placement.translate, coordinate);
+  shape.read("translate", placement.translate, kCoordinate);
 }
 
 PartMaterial read_part(TableReader& table, const std::vector<std::string_view>& material_names) {

@@ -5,10 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/base/constants.h"
+
 namespace mica::reference {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kUniformShare = 0.125;
 
 double normal_share(double low, double high, double mean, double sigma) {

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/base/constants.h"
+
 namespace mica::reference {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
-// kernels/glint_hash.h, written again.
+// kernels/grid/glint_hash.h, written again.
 std::uint32_t mix(std::uint32_t x) {
   x = (x ^ (x >> 16)) * 0x7feb352du;
   x = (x ^ (x >> 15)) * 0x846ca68bu;

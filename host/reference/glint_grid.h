@@ -8,7 +8,7 @@
 
 namespace mica::reference {
 
-/// What is random about the glint of a cell; kernels/glint_hash.h, written again.
+/// What is random about the glint of a cell; kernels/grid/glint_hash.h, written again.
 struct Glint {
   Eigen::Vector2d place, angle;  ///< in the cell, (0, 1)^2: on the surface, on the disk
   double roulette;               ///< (0, 1): of its level

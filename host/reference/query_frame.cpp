@@ -6,12 +6,11 @@
 #include <cmath>
 #include <limits>
 
+#include "host/base/constants.h"
 #include "host/base/error.h"
 
 namespace mica::reference {
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 /// a c - b^2 without cancellation: elongated footprints have determinants far smaller than either product.
 double determinant(double a, double b, double c) {
@@ -23,14 +22,14 @@ void require(bool holds, const char* what) {
   if (!holds) throw UsageError(what);
 }
 
-/// The sum of G_p over all periods is (1 + ripple) / (W H), where the ripple is the sum of exp(-2 pi^2 k^T C
-/// k) over the integer vectors k != 0 (Poisson summation, C in uv). At most 8 exp(-2 pi^2 e) where C's
+/// The sum of G_p over all periods is (1 + ripple) / (W H), where the ripple is the sum of exp(-2 kPi^2 k^T C
+/// k) over the integer vectors k != 0 (Poisson summation, C in uv). At most 8 exp(-2 kPi^2 e) where C's
 /// smaller eigenvalue e > 0.1.
 bool ripple_below(double bound, double cuu, double det, double cvv) {
   const double half_trace = 0.5 * (cuu + cvv);
   const double larger = half_trace + std::sqrt(std::max(0.0, half_trace * half_trace - det));
   const double smaller = det / larger;
-  return smaller > 0.1 && 8 * std::exp(-2 * pi * pi * smaller) <= bound;
+  return smaller > 0.1 && 8 * std::exp(-2 * kPi * kPi * smaller) <= bound;
 }
 
 }  // namespace
@@ -59,9 +58,9 @@ QueryFrame::QueryFrame(const Surface& surface, const Query& query, double neglig
   inverse_x_ = covers_evenly_ ? 0 : 1 / sigma_x;
   inverse_y_ = covers_evenly_ ? 0 : 1 / sigma_y;
   shear_ = cov(0, 1) / std::sqrt(cov(0, 0)) * height;
-  const double footprint_area = covers_evenly_ ? width * height : 2 * pi * sigma_x * sigma_y;
+  const double footprint_area = covers_evenly_ ? width * height : 2 * kPi * sigma_x * sigma_y;
   effective_area_ = covers_evenly_ ? footprint_area : footprint_area + 1;
-  scale_ = 1 / (footprint_area * 2 * pi * query.roughness * query.roughness);
+  scale_ = 1 / (footprint_area * 2 * kPi * query.roughness * query.roughness);
 
   constexpr double epsilon = std::numeric_limits<double>::epsilon();
   const double finest = std::min(sigma_x, sigma_y) / std::max(width, height);

@@ -8,7 +8,7 @@ namespace mica::reference {
 /// dimension / 2 as its key. [Salmon et al., SC 2011]
 std::uint32_t random_bits(std::uint64_t key, std::uint32_t dimension);
 
-/// Uniform in [0, 1), a multiple of 2^-24; what kernels/random_numbers.h gives for the same two.
+/// Uniform in [0, 1), a multiple of 2^-24; what kernels/wave/random_numbers.h gives for the same two.
 double random_uniform(std::uint64_t key, std::uint32_t dimension);
 
 }  // namespace mica::reference

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "host/bench/results.h"
+#include "host/measure/results.h"
 
 namespace mica {
 

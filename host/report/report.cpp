@@ -11,11 +11,11 @@ namespace {
 
 using nlohmann::ordered_json;
 
-double mebibytes(std::size_t bytes) {
+double to_mebibytes(std::size_t bytes) {
   return static_cast<double>(bytes) / (1 << 20);
 }
 
-double rate(std::size_t queries, double seconds) {
+double queries_per_second(std::size_t queries, double seconds) {
   return seconds > 0 ? static_cast<double>(queries) / seconds : 0;
 }
 
@@ -78,8 +78,8 @@ std::string render_json(const Job& job, const DeviceInfo& device, const RenderRe
                      {"wait", s.wait},         {"audit", s.audit}, {"total", s.total}};
   json["queries"] = result.queries;
   json["device_seconds"] = result.device_seconds;
-  json["queries_per_second"] = rate(result.queries, s.render);
-  json["device_queries_per_second"] = rate(result.queries, result.device_seconds);
+  json["queries_per_second"] = queries_per_second(result.queries, s.render);
+  json["device_queries_per_second"] = queries_per_second(result.queries, result.device_seconds);
   json["audit"] = {{"samples", result.audit.samples},
                    {"relative_l2", result.audit.relative_l2},
                    {"percentile_99", result.audit.percentile_99},
@@ -104,14 +104,15 @@ std::string frames_json(const std::vector<std::string>& frames) {
 std::string render_summary(const DeviceInfo& device, const RenderResult& result) {
   const PhaseSeconds& s = result.seconds;
   std::string text = fmt::format("device    {} ({} compute units)\n", device.name, device.compute_units);
-  text += fmt::format("memory    {:.1f} MiB of structures on the device\n", mebibytes(result.device_bytes));
+  text +=
+      fmt::format("memory    {:.1f} MiB of structures on the device\n", to_mebibytes(result.device_bytes));
   text += fmt::format(
       "seconds   {:.2f} in all: surfaces {:.2f}, scene {:.2f}, build {:.2f}, render {:.2f} (of it tracing "
       "{:.2f}, gathering light {:.2f}, waiting for the device {:.2f}), audit {:.2f}\n",
       s.total, s.surfaces, s.scene, s.build, s.render, s.trace, s.gather, s.wait, s.audit);
-  text +=
-      fmt::format("queries   {} at {:.3f} million/s ({:.3f} in the kernels alone)\n", result.queries,
-                  1e-6 * rate(result.queries, s.render), 1e-6 * rate(result.queries, result.device_seconds));
+  text += fmt::format("queries   {} at {:.3f} million/s ({:.3f} in the kernels alone)\n", result.queries,
+                      1e-6 * queries_per_second(result.queries, s.render),
+                      1e-6 * queries_per_second(result.queries, result.device_seconds));
   if (result.audit.samples) {
     text += fmt::format(
         "audit     {} queries against the oracle: relative L2 {:.2e}, 99th percentile {:.2e}, "

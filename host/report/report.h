@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "host/device/device.h"
-#include "host/engine/estimate.h"
-#include "host/engine/render.h"
 #include "host/job/job.h"
+#include "host/render/estimate.h"
+#include "host/render/render.h"
 
 namespace mica {
 

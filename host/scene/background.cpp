@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/base/constants.h"
 #include "host/image/image.h"
 
 namespace mica {
@@ -25,10 +26,9 @@ Color Background::pixel(int column, int row) const {
 
 Color Background::radiance(const Eigen::Vector3d& direction) const {
   if (pixels_.empty()) return color_;
-  constexpr double pi = 3.14159265358979323846;
   const double longitude = std::atan2(direction.x(), direction.y());
   const double colatitude = std::atan2(std::hypot(direction.x(), direction.y()), direction.z());
-  const double x = (0.5 + longitude / (2 * pi)) * width_ - 0.5, y = colatitude / pi * height_ - 0.5;
+  const double x = (0.5 + longitude / (2 * kPi)) * width_ - 0.5, y = colatitude / kPi * height_ - 0.5;
   const int column = static_cast<int>(std::floor(x)), row = static_cast<int>(std::floor(y));
   const double right = x - column, below = y - row;
   return (1 - below) * ((1 - right) * pixel(column, row) + right * pixel(column + 1, row)) +

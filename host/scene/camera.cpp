@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "host/base/constants.h"
 #include "host/base/error.h"
 
 namespace mica {
@@ -17,7 +18,7 @@ PinholeCamera::PinholeCamera(const CameraDescription& description, int width, in
   if (!(description.fov_degrees > 0 && description.fov_degrees < 180))
     throw UsageError("camera: fov must lie between 0 and 180 degrees");
 
-  constexpr double degree = 3.14159265358979323846 / 180;
+  constexpr double degree = kPi / 180;
   const double pixel = 2 * std::tan(description.fov_degrees * degree / 2) / height;
   const Eigen::Vector3d forward = axis.normalized(), right = side.normalized();
   ddx_ = pixel * right;

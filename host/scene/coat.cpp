@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/base/constants.h"
 #include "host/scene/fresnel.h"
 
 namespace mica {
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 /// Reflectance of the interface for diffuse light from outside: 2 int F(c) c dc, by the midpoint rule.
 double outer_reflectance(double ior) {
@@ -25,7 +24,7 @@ double outer_reflectance(double ior) {
 double beckmann(double cosine, double alpha2) {
   if (cosine <= 0) return 0;
   const double cos2 = cosine * cosine;
-  return std::exp((1 - 1 / cos2) / alpha2) / (pi * alpha2 * cos2 * cos2);
+  return std::exp((1 - 1 / cos2) / alpha2) / (kPi * alpha2 * cos2 * cos2);
 }
 
 }  // namespace
@@ -48,7 +47,7 @@ double CoatInterface::crossing(double cos_o, double cos_i) const {
 
 Color CoatInterface::diffuse(const Color& albedo, double cos_o, double cos_i) const {
   const Color all_bounces = (albedo.array() / (1 - inner_reflectance_ * albedo.array())).matrix();
-  return crossing(cos_o, cos_i) / pi * all_bounces;
+  return crossing(cos_o, cos_i) / kPi * all_bounces;
 }
 
 Color CoatInterface::glint_weight(const Fresnel& fresnel, double masking_alpha, const Eigen::Vector3d& n,

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/base/constants.h"
 #include "host/base/error.h"
 #include "host/image/image.h"
 #include "host/scene/background.h"
@@ -12,8 +13,6 @@
 
 namespace mica {
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 /// Mean over a pixel's extent of what is linear between it and its neighbours: (1, 6, 1) / 8 an axis.
 double mean_of_bilinear(const std::vector<double>& values, int width, int height, int column, int row) {
@@ -51,8 +50,8 @@ class Environment::Light {
  public:
   explicit Light(const EnvironmentLight& description)
       : scale_(description.radiance),
-        cos_rotation_(std::cos(description.rotation_degrees * pi / 180)),
-        sin_rotation_(std::sin(description.rotation_degrees * pi / 180)),
+        cos_rotation_(std::cos(description.rotation_degrees * kPi / 180)),
+        sin_rotation_(std::sin(description.rotation_degrees * kPi / 180)),
         image_({Color::Ones(), description.path, false}) {
     std::vector<double> values = {1};
     if (!description.path.empty()) {
@@ -84,7 +83,7 @@ class Environment::Light {
     const double top = cos_colatitude(static_cast<int>(row)),
                  bottom = cos_colatitude(static_cast<int>(row) + 1);
     const double z = top + uniform.y() * (bottom - top);
-    const double longitude = 2 * pi * ((static_cast<double>(column) + uniform.x()) / width_ - 0.5);
+    const double longitude = 2 * kPi * ((static_cast<double>(column) + uniform.x()) / width_ - 0.5);
     const double radius = std::sqrt(std::max(0.0, (1 - z) * (1 + z)));
     const Eigen::Vector3d d(radius * std::sin(longitude), radius * std::cos(longitude), z);
     return {cos_rotation_ * d.x() - sin_rotation_ * d.y(), sin_rotation_ * d.x() + cos_rotation_ * d.y(), z};
@@ -94,18 +93,18 @@ class Environment::Light {
     const Eigen::Vector3d d = to_image(direction);
     const double longitude = std::atan2(d.x(), d.y());
     const double colatitude = std::atan2(std::hypot(d.x(), d.y()), d.z());
-    const int column = std::clamp(static_cast<int>((0.5 + longitude / (2 * pi)) * width_), 0, width_ - 1);
-    const int row = std::clamp(static_cast<int>(colatitude / pi * height_), 0, height_ - 1);
+    const int column = std::clamp(static_cast<int>((0.5 + longitude / (2 * kPi)) * width_), 0, width_ - 1);
+    const int row = std::clamp(static_cast<int>(colatitude / kPi * height_), 0, height_ - 1);
     return rows_.probability(static_cast<std::size_t>(row)) *
            columns_[static_cast<std::size_t>(row)].probability(static_cast<std::size_t>(column)) /
            solid_angle(row);
   }
 
  private:
-  double cos_colatitude(int row) const { return std::cos(pi * row / height_); }
+  double cos_colatitude(int row) const { return std::cos(kPi * row / height_); }
   /// Of one pixel.
   double solid_angle(int row) const {
-    return 2 * pi / width_ * (cos_colatitude(row) - cos_colatitude(row + 1));
+    return 2 * kPi / width_ * (cos_colatitude(row) - cos_colatitude(row + 1));
   }
   Eigen::Vector3d to_image(const Eigen::Vector3d& d) const {
     return {cos_rotation_ * d.x() + sin_rotation_ * d.y(), cos_rotation_ * d.y() - sin_rotation_ * d.x(),

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/base/constants.h"
 #include "host/base/error.h"
 #include "host/scene/curve.h"
 #include "host/scene/loft.h"
@@ -10,11 +11,10 @@
 namespace mica {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-constexpr int steps = 320, steps_around = 128, tine_steps = 120, tine_steps_around = 64;
+constexpr int fork_steps = 320, fork_steps_around = 128, tine_steps = 120, tine_steps_around = 64;
 
 // Lengths in units of the fork's; x runs from the handle's end at -1/2 to the tips of the tines at 1/2.
-constexpr double handle_end = 0.035, head_tip = 0.325, head_end = 0.02, tine_root = 0.27;
+constexpr double fork_handle_end = 0.035, head_tip = 0.325, head_end = 0.02, tine_root = 0.27;
 constexpr double tine_spacing = 0.034, tine_half_width = 0.0098, tine_point = 0.012;
 
 double round_off(double beyond, double length) {
@@ -39,9 +39,9 @@ struct Side {
 class Handle {
  public:
   LoftSection operator()(double q) const {
-    const double length = head_tip + 0.5, x = -0.5 + length * 0.5 * (1 - std::cos(pi * q));
+    const double length = head_tip + 0.5, x = -0.5 + length * 0.5 * (1 - std::cos(kPi * q));
     const double ends =
-        round_off(handle_end - 0.5 - x, handle_end) * round_off(x - head_tip + head_end, head_end);
+        round_off(fork_handle_end - 0.5 - x, fork_handle_end) * round_off(x - head_tip + head_end, head_end);
     return {x, 0, width_.at(x) * ends, side_.height.at(x), 0.006 * hollow_.at(x), side_.thickness.at(x)};
   }
 
@@ -64,7 +64,7 @@ class Tine {
   explicit Tine(double middle) : middle_(middle) {}
 
   LoftSection operator()(double q) const {
-    const double length = 0.5 - tine_root, x = tine_root + length * 0.5 * (1 - std::cos(pi * q));
+    const double length = 0.5 - tine_root, x = tine_root + length * 0.5 * (1 - std::cos(kPi * q));
     const double ends =
         round_off(tine_root + tine_point - x, tine_point) * round_off(x - 0.5 + tine_point, tine_point);
     // Inside the head a little thinner than it, so that both do not lie in one plane.
@@ -88,7 +88,7 @@ TriangleMesh make_fork(const ForkShape& fork) {
   if (!(fork.center.allFinite() && std::isfinite(fork.size) && fork.size > 0))
     throw UsageError("fork: center must be finite and size positive");
   TriangleMesh mesh;
-  add_loft(Handle(), steps, steps_around, &mesh);
+  add_loft(Handle(), fork_steps, fork_steps_around, &mesh);
   for (const double tine : {-1.5, -0.5, 0.5, 1.5})
     add_loft(Tine(tine * tine_spacing), tine_steps, tine_steps_around, &mesh);
   place_body(fork.center, fork.size, &mesh);

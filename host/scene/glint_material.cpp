@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/microfacet/glint_masking.h"
 #include "host/scene/footprint.h"
 #include "host/scene/fresnel.h"
-#include "host/scene/glint_masking.h"
 
 namespace mica {
 namespace {

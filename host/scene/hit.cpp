@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/base/constants.h"
+
 namespace mica {
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 /// Some 30 roundings of the largest number that goes into an intersection with a primitive of this extent.
 double single_precision_error(const Eigen::Vector3d& position, double extent) {
@@ -18,14 +18,14 @@ double single_precision_error(const Eigen::Vector3d& position, double extent) {
 void parameterise_sphere(double radius, Hit* hit) {
   const Eigen::Vector3d& n = hit->normal;
   const double longitude = std::atan2(n.y(), n.x());
-  hit->uv = {longitude / (2 * pi) + (longitude < 0 ? 1 : 0),
-             0.5 + std::atan2(n.z(), std::hypot(n.x(), n.y())) / pi};
+  hit->uv = {longitude / (2 * kPi) + (longitude < 0 ? 1 : 0),
+             0.5 + std::atan2(n.z(), std::hypot(n.x(), n.y())) / kPi};
   // At the poles longitude has no direction; a point just beside them stands in.
   const double across = std::max(std::hypot(n.x(), n.y()), 1e-6);
   const double cos_longitude = std::cos(longitude), sin_longitude = std::sin(longitude);
   hit->tangent = Eigen::Vector3d(-sin_longitude, cos_longitude, 0);
-  hit->dpdu = 2 * pi * radius * across * hit->tangent;
-  hit->dpdv = pi * radius * Eigen::Vector3d(-n.z() * cos_longitude, -n.z() * sin_longitude, across);
+  hit->dpdu = 2 * kPi * radius * across * hit->tangent;
+  hit->dpdv = kPi * radius * Eigen::Vector3d(-n.z() * cos_longitude, -n.z() * sin_longitude, across);
 }
 
 /// The interpolated attribute of a triangle's corners.

@@ -2,14 +2,13 @@
 
 #include <cmath>
 
+#include "host/base/constants.h"
 #include "host/base/error.h"
 #include "host/scene/loft.h"
 #include "host/scene/outline.h"
 
 namespace mica {
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 // Distance from the axis and height, in units of the jar's height.
 constexpr double widest = 0.43;
@@ -31,7 +30,7 @@ TriangleMesh make_jar(const JarShape& jar) {
   if (!(jar.center.allFinite() && std::isfinite(jar.size) && jar.size > 0))
     throw UsageError("jar: center must be finite and size positive");
   TriangleMesh mesh;
-  const double circumference = 2 * pi * widest;
+  const double circumference = 2 * kPi * widest;
   add_revolved(rounded_outline(body()), circumference, "body", &mesh);
   add_revolved(rounded_outline(lid()), circumference, "lid", &mesh);
   place_body(jar.center, jar.size, &mesh);

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/base/constants.h"
+
 namespace mica {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 constexpr double largest_roughness = 1;  // that evaluators take
 
 /// Roughness of a query whose light has an extent.
@@ -20,7 +21,7 @@ LobesSeen see_bare(const MaterialDescription& material, double masking_alpha, co
   const Eigen::Vector3d& to_light = incident.direction;
   const Eigen::Vector3d half = (to_eye + to_light).normalized();
   const double variance = half_vector_variance(incident.variance, to_light.dot(half));
-  return {material.diffuse / pi * to_light.dot(n), half, widened(material.roughness, variance),
+  return {material.diffuse / kPi * to_light.dot(n), half, widened(material.roughness, variance),
           glint_weight(material.specular, masking_alpha, n, to_eye, to_light)};
 }
 

@@ -4,15 +4,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/base/constants.h"
+
 namespace mica {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 constexpr double difference = 1e-5;  // of q and of the angle, for derivatives
 
 using Section = std::function<LoftSection(double q)>;
 
-/// A point of the section's outline: the upper side for angles between 0 and pi, the edges at both.
+/// A point of the section's outline: the upper side for angles between 0 and kPi, the edges at both.
 Eigen::Vector3d outline(const LoftSection& section, double angle) {
   const double s = std::cos(angle);
   return {section.x, section.middle_y + section.half_width * s,
@@ -36,7 +37,7 @@ void add_loft(const Section& section, int steps, int steps_around, TriangleMesh*
   for (int i = 0; i <= steps; ++i) {
     const double q = static_cast<double>(i) / steps;
     for (int j = 0; j < steps_around; ++j) {
-      const double angle = 2 * pi * j / steps_around;
+      const double angle = 2 * kPi * j / steps_around;
       const Eigen::Vector3d position = outline(section(q), angle), normal = normal_of(section, q, angle);
       mesh->positions.push_back(position.cast<float>());
       mesh->normals.push_back(normal.cast<float>());

@@ -2,11 +2,12 @@
 
 #include <cmath>
 
+#include "host/base/constants.h"
+
 namespace mica {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-constexpr int steps_around = 360, steps_an_arc = 24, steps_a_line = 24;
+constexpr int outline_steps_around = 360, steps_an_arc = 24, steps_a_line = 24;
 
 Eigen::Vector2d to_the_right(const Eigen::Vector2d& direction) {
   return {direction.y(), -direction.x()};
@@ -57,10 +58,10 @@ void add_revolved(const std::vector<OutlinePoint>& outline, double circumference
   mesh->parts.push_back(part);
   auto ring = static_cast<std::uint32_t>(mesh->positions.size());
   double length = 0;
-  for (std::size_t n = 0; n < outline.size(); ++n, ring += steps_around + 1) {
+  for (std::size_t n = 0; n < outline.size(); ++n, ring += outline_steps_around + 1) {
     if (n > 0) length += (outline[n].position - outline[n - 1].position).norm();
-    for (int j = 0; j <= steps_around; ++j) {
-      const double u = static_cast<double>(j) / steps_around, angle = 2 * pi * u;
+    for (int j = 0; j <= outline_steps_around; ++j) {
+      const double u = static_cast<double>(j) / outline_steps_around, angle = 2 * kPi * u;
       const Eigen::Vector3d radial(-std::sin(angle), std::cos(angle), 0),
           forward(-std::cos(angle), -std::sin(angle), 0);
       const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
@@ -72,8 +73,8 @@ void add_revolved(const std::vector<OutlinePoint>& outline, double circumference
     }
     if (n + 1 == outline.size()) break;
     const bool from_axis = outline[n].position.x() < 1e-9, to_axis = outline[n + 1].position.x() < 1e-9;
-    for (std::uint32_t j = 0; j < steps_around; ++j) {
-      const std::uint32_t a = ring + j, b = a + steps_around + 1;
+    for (std::uint32_t j = 0; j < outline_steps_around; ++j) {
+      const std::uint32_t a = ring + j, b = a + outline_steps_around + 1;
       if (!from_axis) mesh->triangles.push_back({a, a + 1, b + 1});
       if (!to_axis) mesh->triangles.push_back({a, b + 1, b});
     }

@@ -1,11 +1,12 @@
 #include "host/scene/placement.h"
 
+#include "host/base/constants.h"
 #include "host/base/error.h"
 
 namespace mica {
 namespace {
 
-constexpr double degree = 3.14159265358979323846 / 180;
+constexpr double degree = kPi / 180;
 constexpr double relative_error = 4e-6;  // of single precision, see hit.cpp
 
 Eigen::Affine3d transform_of(const Placement& placement) {

@@ -5,8 +5,9 @@
 #include <cmath>
 #include <limits>
 
+#include "host/base/constants.h"
+#include "host/microfacet/masking.h"
 #include "host/scene/fresnel.h"
-#include "host/scene/masking.h"
 
 namespace mica {
 namespace {
@@ -47,7 +48,7 @@ struct Illuminate {
 /// Uniform on the unit disk, from the unit square. [Shirley97]: Peter Shirley and Kenneth Chiu, "A Low
 /// Distortion Map Between Disk and Square", Journal of Graphics Tools 2(3), 1997.
 Eigen::Vector2d on_unit_disk(const Eigen::Vector2d& sample) {
-  constexpr double quarter = 3.14159265358979323846 / 4;
+  constexpr double quarter = kPi / 4;
   const double x = 2 * sample.x() - 1, y = 2 * sample.y() - 1;
   if (x == 0 && y == 0) return {0, 0};
   const bool wide = std::abs(x) > std::abs(y);

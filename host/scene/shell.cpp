@@ -4,30 +4,29 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/base/constants.h"
 #include "host/base/error.h"
 
 namespace mica {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
 // [Raup66]'s parameters; lengths in units of the last whorl's distance from the axis.
-constexpr double growth = 0.69314718055994530942 / (2 * pi);  ///< a radian: whorls double a turn
+constexpr double growth = 0.69314718055994530942 / (2 * kPi);  ///< a radian: whorls double a turn
 constexpr double tube_radius = 0.82;
 constexpr double translation = 1.35;  ///< of the last whorl's centre down the axis, from the apex of the cone
 
 /// Angle over which the tube tapers at the apex: two turns leave no visible pit behind its end.
-constexpr double apex_angle = 4 * pi;
+constexpr double apex_angle = 4 * kPi;
 
 // The lip, in units of the tube's radius, and how far back along the spiral it reaches.
 constexpr double lip_flare = 0.1, lip_thickness = 0.08;
-constexpr double flare_angle = 1.2, inner_angle = 1.4 * pi;
+constexpr double flare_angle = 1.2, inner_angle = 1.4 * kPi;
 
 // Pose, radians: the aperture's turn about the axis, the axis' lean towards -y, the turn of it all about the
 // vertical.
 constexpr float spin = -0.09f, lean = 0.79f, azimuth = -0.26f;
 
-constexpr int steps_around = 224, steps_a_turn = 192, steps_an_end = 48;
+constexpr int shell_steps_around = 224, steps_a_turn = 192, steps_an_end = 48;
 
 /// The self-similar surface: theta along the spiral (0 at the aperture, negative before), c the share of the
 /// tube's radius, phi around it.
@@ -65,7 +64,7 @@ Eigen::Vector3d around(double theta, double phi) {
 }
 /// Length of the circle c = 1.
 double circumference(double theta) {
-  return 2 * pi * tube_radius * scale(theta);
+  return 2 * kPi * tube_radius * scale(theta);
 }
 
 }  // namespace tube
@@ -81,7 +80,7 @@ struct ProfilePoint {
 class Profile {
  public:
   explicit Profile(double turns)
-      : start_(-2 * pi * turns), rounding_(tube_radius / tube::d_theta(0, 1, 0).norm()) {
+      : start_(-2 * kPi * turns), rounding_(tube_radius / tube::d_theta(0, 1, 0).norm()) {
     add(steps(apex_angle) / 2, [&](double x) { return apex(x); });
     add(steps(-start_), [&](double x) { return outer_wall(x); });
     add(2 * steps_an_end, [&](double x) { return rim(x); });
@@ -92,7 +91,7 @@ class Profile {
   const std::vector<ProfilePoint>& points() const { return points_; }
 
  private:
-  static int steps(double angle) { return static_cast<int>(std::ceil(angle / (2 * pi) * steps_a_turn)); }
+  static int steps(double angle) { return static_cast<int>(std::ceil(angle / (2 * kPi) * steps_a_turn)); }
 
   template <class Section>
   void add(int count, const Section& section) {
@@ -100,12 +99,12 @@ class Profile {
   }
 
   ProfilePoint apex(double x) const {
-    const double sin = std::sin(pi / 2 * x), cos = std::cos(pi / 2 * x);
+    const double sin = std::sin(kPi / 2 * x), cos = std::cos(kPi / 2 * x);
     return {start_ - apex_angle * cos, sin, apex_angle * sin, cos};
   }
   ProfilePoint outer_wall(double x) const { return wall(start_ * (1 - x)); }
   ProfilePoint rim(double x) const {
-    const double sin = std::sin(pi * x), cos = std::cos(pi * x), half = lip_thickness / 2;
+    const double sin = std::sin(kPi * x), cos = std::cos(kPi * x), half = lip_thickness / 2;
     return {rounding_ * half * sin, 1 + lip_flare - half + half * cos, rounding_ * cos, -sin};
   }
   ProfilePoint inner_wall(double x) const {
@@ -113,7 +112,7 @@ class Profile {
     return {outer.theta, outer.c - lip_thickness, -outer.dtheta, -outer.dc};
   }
   ProfilePoint inner_end(double x) const {
-    const double sin = std::sin(pi / 2 * x), cos = std::cos(pi / 2 * x), c = 1 - lip_thickness;
+    const double sin = std::sin(kPi / 2 * x), cos = std::cos(kPi / 2 * x), c = 1 - lip_thickness;
     return {-inner_angle - rounding_ * sin, c * cos, -rounding_ * cos, -c * sin};
   }
   /// The outer wall, which flares towards the lip as a smoothstep.
@@ -127,9 +126,9 @@ class Profile {
 };
 
 void add_ring(const ProfilePoint& at, double u, TriangleMesh* mesh) {
-  for (int j = 0; j <= steps_around; ++j) {
-    const double v = static_cast<double>(j) / steps_around;
-    const double phi = pi - 2 * pi * v;  // the seam faces the axis
+  for (int j = 0; j <= shell_steps_around; ++j) {
+    const double v = static_cast<double>(j) / shell_steps_around;
+    const double phi = kPi - 2 * kPi * v;  // the seam faces the axis
     const Eigen::Vector3d along =
         at.dtheta * tube::d_theta(at.theta, at.c, phi) + at.dc * tube::d_c(at.theta, phi);
     mesh->positions.push_back(tube::position(at.theta, at.c, phi).cast<float>());
@@ -141,8 +140,8 @@ void add_ring(const ProfilePoint& at, double u, TriangleMesh* mesh) {
 
 /// Triangles between a ring and the next; those that vanish where a ring is a point are left out.
 void join_rings(std::uint32_t first, bool from_point, bool to_point, TriangleMesh* mesh) {
-  for (std::uint32_t j = 0; j < steps_around; ++j) {
-    const std::uint32_t a = first + j, b = a + steps_around + 1;
+  for (std::uint32_t j = 0; j < shell_steps_around; ++j) {
+    const std::uint32_t a = first + j, b = a + shell_steps_around + 1;
     if (!to_point) mesh->triangles.push_back({a, b, b + 1});
     if (!from_point) mesh->triangles.push_back({a, b + 1, a + 1});
   }
@@ -158,7 +157,8 @@ TriangleMesh sweep(const std::vector<ProfilePoint>& profile) {
     const ProfilePoint& next = profile[i + 1];
     u += (tube::position(next.theta, next.c, 0) - tube::position(at.theta, at.c, 0)).norm() /
          tube::circumference((at.theta + next.theta) / 2);
-    join_rings(static_cast<std::uint32_t>(i * (steps_around + 1)), i == 0, i + 2 == profile.size(), &mesh);
+    join_rings(static_cast<std::uint32_t>(i * (shell_steps_around + 1)), i == 0, i + 2 == profile.size(),
+               &mesh);
   }
   return mesh;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "host/base/constants.h"
 #include "host/scene/fresnel.h"
 #include "host/scene/lobes.h"
 #include "host/scene/shading.h"
@@ -12,14 +13,13 @@
 namespace mica {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 constexpr double least_alpha =
     1e-3;  // of a flat map: smoother is a mirror, which no draw towards a light meets
 
 /// [Che18] Eq. 4, centred and isotropic.
 double beckmann_density(const Eigen::Vector3d& half, double alpha) {
   const double cos2 = half.z() * half.z(), tan2 = (1 - cos2) / cos2;
-  return std::exp(-tan2 / (alpha * alpha)) / (pi * alpha * alpha * cos2 * cos2);
+  return std::exp(-tan2 / (alpha * alpha)) / (kPi * alpha * alpha * cos2 * cos2);
 }
 
 bool above_horizon(const Eigen::Vector3d& view, const Eigen::Vector3d& light) {
@@ -56,7 +56,7 @@ Color SmoothMaterial::value(const Eigen::Vector3d& view, const Eigen::Vector3d& 
 Eigen::Vector3d SmoothMaterial::sample(const Eigen::Vector3d& view, const Eigen::Vector3d& uniform) const {
   const double lobe = uniform.z() * (diffuse_weight_ + coat_weight_ + normals_weight_);
   if (lobe < diffuse_weight_) {
-    const double radius = std::sqrt(uniform.x()), azimuth = 2 * pi * uniform.y();
+    const double radius = std::sqrt(uniform.x()), azimuth = 2 * kPi * uniform.y();
     return {radius * std::cos(azimuth), radius * std::sin(azimuth), std::sqrt(1 - uniform.x())};
   }
   const VisibleNormals& normals = lobe < diffuse_weight_ + coat_weight_ ? coat_normals_ : normals_;
@@ -67,7 +67,7 @@ Eigen::Vector3d SmoothMaterial::sample(const Eigen::Vector3d& view, const Eigen:
 double SmoothMaterial::pdf(const Eigen::Vector3d& view, const Eigen::Vector3d& light) const {
   if (!above_horizon(view, light)) return 0;
   const Eigen::Vector3d half = (view + light).normalized();
-  double sum = diffuse_weight_ * light.z() / pi;
+  double sum = diffuse_weight_ * light.z() / kPi;
   if (coat_weight_ > 0) sum += coat_weight_ * coat_normals_.pdf(view, half);
   if (normals_weight_ > 0) sum += normals_weight_ * normals_.pdf(view, half);
   return sum / (diffuse_weight_ + coat_weight_ + normals_weight_);

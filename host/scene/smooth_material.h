@@ -3,9 +3,9 @@
 #include <Eigen/Core>
 #include <optional>
 
+#include "host/microfacet/visible_normals.h"
 #include "host/scene/coat.h"
 #include "host/scene/description.h"
-#include "host/scene/visible_normals.h"
 
 namespace mica {
 

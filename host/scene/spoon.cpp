@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "host/base/constants.h"
 #include "host/base/error.h"
 #include "host/scene/curve.h"
 #include "host/scene/loft.h"
@@ -9,12 +10,11 @@
 namespace mica {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-constexpr int steps = 320, steps_around = 160;
+constexpr int spoon_steps = 320, spoon_steps_around = 160;
 
 // Lengths in units of the spoon's; x runs from the handle's end at -1/2 to the bowl's tip at 1/2.
 constexpr double bowl_middle = 0.335, bowl_half_length = 0.165, bowl_half_width = 0.112, bowl_depth = 0.042;
-constexpr double handle_end = 0.035;  ///< over which the handle rounds off
+constexpr double spoon_handle_end = 0.035;  ///< over which the handle rounds off
 
 /// How wide an ellipse is at `x` from its middle, as a share of its half width.
 double ellipse(double x, double half_length) {
@@ -25,12 +25,12 @@ double ellipse(double x, double half_length) {
 class Spoon {
  public:
   LoftSection operator()(double q) const {
-    const double x = -0.5 * std::cos(pi * q);  // closer together at both tips
+    const double x = -0.5 * std::cos(kPi * q);  // closer together at both tips
     // Broadest before the middle, as an egg.
     const double along = (x - bowl_middle) / bowl_half_length;
     const double egg = bowl_half_width * ellipse(along, 1) * (1 - 0.12 * along);
     double handle = handle_width_.at(x);
-    if (x < handle_end - 0.5) handle *= ellipse(handle_end - 0.5 - x, handle_end);
+    if (x < spoon_handle_end - 0.5) handle *= ellipse(spoon_handle_end - 0.5 - x, spoon_handle_end);
     if (x > bowl_middle) handle *= ellipse(along, 1);
     const double width = std::cbrt(egg * egg * egg + handle * handle * handle);
     const double hollow = along * along < 1 ? bowl_depth * std::pow(1 - along * along, 1.5) : 0;
@@ -56,7 +56,7 @@ TriangleMesh make_spoon(const SpoonShape& spoon) {
   if (!(spoon.center.allFinite() && std::isfinite(spoon.size) && spoon.size > 0))
     throw UsageError("spoon: center must be finite and size positive");
   TriangleMesh mesh;
-  add_loft(Spoon(), steps, steps_around, &mesh);
+  add_loft(Spoon(), spoon_steps, spoon_steps_around, &mesh);
   place_body(spoon.center, spoon.size, &mesh);
   return mesh;
 }

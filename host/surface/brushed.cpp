@@ -38,7 +38,7 @@ std::vector<Eigen::Vector2d> synthesise_brushed(const BrushedSurface& brushed, S
         "brushed: a correlation of {} texels leaves few features in a period of {}; the map's is shorter",
         std::max(along, across), brushed.resolution));
   }
-  const double angle = brushed.direction_degrees * synthesis::kPi / 180;
+  const double angle = brushed.direction_degrees * kPi / 180;
   const Eigen::Vector2d a = along * Eigen::Vector2d(std::cos(angle), std::sin(angle));
   const Eigen::Vector2d b = across * Eigen::Vector2d(-std::sin(angle), std::cos(angle));
   return synthesis::gaussian_heightfield(brushed.resolution, brushed.rms_slope,

@@ -11,7 +11,7 @@
 namespace mica {
 namespace {
 
-enum Stream : std::uint64_t { u_stream, v_stream, angle_stream };
+enum BumpStream : std::uint64_t { bump_u_stream, bump_v_stream, bump_angle_stream };
 
 constexpr double kLeastSize = 1e-3;
 
@@ -47,15 +47,15 @@ std::vector<Bump> place_bumps(const BumpsSurface& bumps) {
   std::vector<Bump> placed;
   if (bumps.slope == 0) return placed;  // of an ellipsoid without end
   for (long n = 0; n < cells * cells; ++n) {
-    const auto unit = [&](Stream stream) {
+    const auto unit = [&](BumpStream stream) {
       return synthesis::random_unit(bumps.seed, stream, static_cast<std::uint64_t>(n));
     };
     const long column = n % cells, row = n / cells;
     const Eigen::Vector2d middle(static_cast<double>(column) + 0.5, static_cast<double>(row) + 0.5);
-    const double angle = 2 * synthesis::kPi * unit(angle_stream);
+    const double angle = 2 * kPi * unit(bump_angle_stream);
     Bump bump;
-    bump.center_texels =
-        cell * (middle + bumps.jitter * Eigen::Vector2d(unit(u_stream) - 0.5, unit(v_stream) - 0.5));
+    bump.center_texels = cell * (middle + bumps.jitter * Eigen::Vector2d(unit(bump_u_stream) - 0.5,
+                                                                         unit(bump_v_stream) - 0.5));
     bump.long_axis = {std::cos(angle), std::sin(angle)};
     bump.half_length = bumps.size * cell / 2;
     bump.half_width = bump.half_length / bumps.aspect;

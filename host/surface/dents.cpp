@@ -11,7 +11,7 @@
 namespace mica {
 namespace {
 
-enum Stream : std::uint64_t { u_stream, v_stream, radius_stream };
+enum DentStream : std::uint64_t { dent_u_stream, dent_v_stream, dent_radius_stream };
 
 void check(const DentsSurface& dents) {
   synthesis::check_resolution("dents", dents.resolution);
@@ -40,13 +40,13 @@ std::vector<Dent> place_dents(const DentsSurface& dents) {
   const double mean_squared_radius = (low * low + low * high + high * high) / 3;
   const double area = static_cast<double>(dents.resolution) * dents.resolution;
   const auto count =
-      static_cast<std::uint64_t>(std::llround(dents.density * area / (synthesis::kPi * mean_squared_radius)));
+      static_cast<std::uint64_t>(std::llround(dents.density * area / (kPi * mean_squared_radius)));
   std::vector<Dent> placed;
   for (std::uint64_t n = 0; n < count; ++n) {
-    const auto unit = [&](Stream stream) { return synthesis::random_unit(dents.seed, stream, n); };
+    const auto unit = [&](DentStream stream) { return synthesis::random_unit(dents.seed, stream, n); };
     Dent dent;
-    dent.center_texels = dents.resolution * Eigen::Vector2d(unit(u_stream), unit(v_stream));
-    dent.radius = low + (high - low) * unit(radius_stream);
+    dent.center_texels = dents.resolution * Eigen::Vector2d(unit(dent_u_stream), unit(dent_v_stream));
+    dent.radius = low + (high - low) * unit(dent_radius_stream);
     dent.depth = dents.depth * dent.radius;
     placed.push_back(dent);
   }

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "host/base/constants.h"
 #include "host/base/error.h"
 #include "host/surface/disk.h"
 #include "host/surface/poisson_disk.h"
@@ -36,7 +37,7 @@ void check(const FlakesSurface& flakes) {
 Eigen::Vector2d beckmann_normal(double alpha, std::uint64_t seed, std::uint64_t flake) {
   const std::uint64_t stream = 1u << 20;  // beyond those of PoissonDisk
   const double slope = alpha * std::sqrt(-std::log1p(-synthesis::random_unit(seed, stream, flake)));
-  const double angle = 2 * 3.14159265358979323846 * synthesis::random_unit(seed, stream + 1, flake);
+  const double angle = 2 * kPi * synthesis::random_unit(seed, stream + 1, flake);
   return disk_from_slope({slope * std::cos(angle), slope * std::sin(angle)});
 }
 

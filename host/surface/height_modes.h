@@ -6,10 +6,10 @@
 #include <functional>
 #include <vector>
 
+#include "host/base/constants.h"
+
 /// Periodic heightfields from their Fourier modes.
 namespace mica::synthesis {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// Wave vector of the mode with m periods along u and n along v, radians a texel.
 inline Eigen::Vector2d wave_vector(int resolution, int m, int n) {

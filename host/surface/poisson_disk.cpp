@@ -12,14 +12,14 @@
 namespace mica::synthesis {
 namespace {
 
-enum Stream : std::uint64_t { order_stream, dart_stream };  // dart_stream + 2 * round: x, + 1: y
+enum DartStream : std::uint64_t { dart_order_stream, dart_stream };  // dart_stream + 2 * round: x, + 1: y
 
 /// 0 .. count-1 in random order (Fisher-Yates).
 std::vector<std::uint32_t> shuffled(std::size_t count, std::uint64_t seed) {
   std::vector<std::uint32_t> order(count);
   std::iota(order.begin(), order.end(), 0u);
   for (std::size_t left = count; left > 1; --left) {
-    std::swap(order[left - 1], order[random_bits(seed, order_stream, left) % left]);
+    std::swap(order[left - 1], order[random_bits(seed, dart_order_stream, left) % left]);
   }
   return order;
 }

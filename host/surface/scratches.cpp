@@ -12,14 +12,14 @@
 namespace mica {
 namespace {
 
-enum Stream : std::uint64_t {
-  u_stream,
-  v_stream,
-  length_stream,
-  width_stream,
-  depth_stream,
-  angle_stream,
-  bend_stream
+enum ScratchStream : std::uint64_t {
+  scratch_u_stream,
+  scratch_v_stream,
+  scratch_length_stream,
+  scratch_width_stream,
+  scratch_depth_stream,
+  scratch_angle_stream,
+  scratch_bend_stream
 };
 
 constexpr double kResolvedWidth = 4;  // texels; narrower, and a slanting groove falls apart into dots
@@ -77,18 +77,21 @@ std::vector<Scratch> place_scratches(const ScratchesSurface& scratches) {
       std::llround(scratches.density * area / (scratches.length_texels * scratches.width_texels)));
   std::vector<Scratch> placed;
   for (std::uint64_t n = 0; n < count; ++n) {
-    const auto unit = [&](Stream stream) { return synthesis::random_unit(scratches.seed, stream, n); };
-    const auto varied = [&](Stream stream) { return 1 + scratches.variation * (2 * unit(stream) - 1); };
+    const auto unit = [&](ScratchStream stream) { return synthesis::random_unit(scratches.seed, stream, n); };
+    const auto varied = [&](ScratchStream stream) {
+      return 1 + scratches.variation * (2 * unit(stream) - 1);
+    };
     const double degrees =
-        scratches.direction_degrees + scratches.spread_degrees * (2 * unit(angle_stream) - 1);
-    const double angle = degrees * synthesis::kPi / 180;
+        scratches.direction_degrees + scratches.spread_degrees * (2 * unit(scratch_angle_stream) - 1);
+    const double angle = degrees * kPi / 180;
     Scratch scratch;
-    scratch.center_texels = scratches.resolution * Eigen::Vector2d(unit(u_stream), unit(v_stream));
+    scratch.center_texels =
+        scratches.resolution * Eigen::Vector2d(unit(scratch_u_stream), unit(scratch_v_stream));
     scratch.direction = {std::cos(angle), std::sin(angle)};
-    scratch.half_length = scratches.length_texels / 2 * varied(length_stream);
-    scratch.half_width = scratches.width_texels / 2 * varied(width_stream);
-    scratch.depth = scratches.depth_texels * varied(depth_stream);
-    scratch.bend = scratches.bend * 2 * scratch.half_length * (2 * unit(bend_stream) - 1);
+    scratch.half_length = scratches.length_texels / 2 * varied(scratch_length_stream);
+    scratch.half_width = scratches.width_texels / 2 * varied(scratch_width_stream);
+    scratch.depth = scratches.depth_texels * varied(scratch_depth_stream);
+    scratch.bend = scratches.bend * 2 * scratch.half_length * (2 * unit(scratch_bend_stream) - 1);
     scratch.profile = scratches.profile;
     placed.push_back(scratch);
   }

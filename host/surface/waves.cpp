@@ -9,8 +9,6 @@
 namespace mica {
 namespace {
 
-using synthesis::kPi;
-
 // Pierson and Moskowitz, "A proposed spectral form for fully developed wind seas", J. Geophys. Res. 69(24),
 // 1964: S(omega) = alpha g^2 / omega^5 exp(-beta (omega_0 / omega)^4) with omega_0 = g / U, U the wind speed
 // at 19.5 m.

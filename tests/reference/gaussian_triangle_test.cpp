@@ -1,4 +1,5 @@
 #include "host/reference/gaussian_triangle.h"
+#include "host/base/constants.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +12,6 @@
 namespace mica::reference {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 constexpr double tolerance = 1e-10;
 
 /// The mean of exp(-|w|^2 / 2) over a triangle, and the error that the oracle claims for it.
@@ -53,7 +53,7 @@ TEST_P(GaussianTriangle, AgreesWithFiftyDigits) {
   const Eigen::Matrix4d frame = turned(&random);
   const double apex = regime.size * (1.3 * uniform(random) - 0.2),
                start = -regime.size * 0.6 * uniform(random);
-  const double turn = 2 * pi * uniform(random);
+  const double turn = 2 * kPi * uniform(random);
   std::array<Whitened, 3> triangle = planar(start, 0, start + regime.size, 0, start + apex, regime.thickness);
   for (Whitened& w : triangle) {
     const double x = w.x(), y = w.y() + regime.distance;
@@ -87,7 +87,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(GaussianTriangleClosedForm, DeepInsideIsOne) {
   const auto triangle = planar(-40, -30, 50, -30, 0, 60);
-  EXPECT_NEAR(mean(triangle).value * flatten(triangle).area() / (2 * pi), 1, 1e-14);
+  EXPECT_NEAR(mean(triangle).value * flatten(triangle).area() / (2 * kPi), 1, 1e-14);
   EXPECT_NEAR(normal_probability({Eigen::Vector2d(-40, -30), {50, -30}, {0, 60}}), 1, 1e-15);
 }
 
@@ -124,7 +124,7 @@ TEST(GaussianTriangleClosedForm, DegenerateTrianglesAreIntegratedOverTheirShadow
   // [-1, 1].
   const Whitened p(0.3, -0.2, 0.1, 0.4);
   EXPECT_NEAR(mean({p, p, p}).value, std::exp(-0.5 * p.squaredNorm()), 1e-15);
-  const double expected = std::sqrt(2 * pi) * std::erf(1 / std::sqrt(2.0)) - 2 * (1 - std::exp(-0.5));
+  const double expected = std::sqrt(2 * kPi) * std::erf(1 / std::sqrt(2.0)) - 2 * (1 - std::exp(-0.5));
   EXPECT_NEAR(mean(planar(-1, 0, 1, 0, 0, 0)).value, expected, 1e-12);
 }
 

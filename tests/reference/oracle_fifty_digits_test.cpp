@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <vector>
 
+#include "host/base/constants.h"
 #include "host/reference/oracle.h"
 #include "host/surface/interpolate.h"
 #include "host/surface/random.h"
@@ -20,7 +21,6 @@ namespace {
 using Number = FiftyDigits::Number;
 
 constexpr int kSide = 8;
-constexpr double kPi = 3.14159265358979323846;
 
 double random(std::uint64_t n, std::uint64_t stream) {
   return synthesis::random_unit(50, stream, n);

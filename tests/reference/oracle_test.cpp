@@ -1,4 +1,5 @@
 #include "host/reference/oracle.h"
+#include "host/base/constants.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -16,8 +17,6 @@
 
 namespace mica::reference {
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 double random_number(int stream, std::uint64_t index) {
   return synthesis::random_unit(1, stream, index);
@@ -49,7 +48,7 @@ Query texel_query(const Surface& surface, Eigen::Vector2d mean, double sigma_maj
 }
 
 double gaussian(const Eigen::Vector2d& x, const Eigen::Matrix2d& cov) {
-  return std::exp(-0.5 * x.dot(cov.inverse() * x)) / (2 * pi * std::sqrt(cov.determinant()));
+  return std::exp(-0.5 * x.dot(cov.inverse() * x)) / (2 * kPi * std::sqrt(cov.determinant()));
 }
 
 Eigen::Matrix2d cov_texels(const Surface& surface, const Query& query) {
@@ -300,7 +299,7 @@ TEST(Oracle, FarFromAllNormalsTheTailKeepsItsDigits) {
   const Surface surface(4, 4, Interpolation::bilinear,
                         std::vector<Eigen::Vector2d>(16, Eigen::Vector2d(0, 0)));
   const Query far = texel_query(surface, {1, 1}, 1, 1, 0, {0.15, 0}, 0.01);  // 15 standard deviations
-  expect_near_relative(evaluate(surface, far), std::exp(-112.5) / (2 * pi * 1e-4), 1e-9);
+  expect_near_relative(evaluate(surface, far), std::exp(-112.5) / (2 * kPi * 1e-4), 1e-9);
   const Query beyond = texel_query(surface, {1, 1}, 1, 1, 0, {0.9, 0}, 1e-3);
   EXPECT_EQ(evaluate(surface, beyond).density, 0);
   EXPECT_TRUE(std::isfinite(evaluate(surface, beyond).error_estimate));

@@ -1,11 +1,10 @@
 // Scratches, dents and bumps: their numbers, shapes and slopes.
+#include "host/base/constants.h"
 #include "host/base/error.h"
 #include "tests/surface/map_statistics.h"
 
 namespace mica {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 template <typename Description>
 Slopes slopes(const Description& description) {

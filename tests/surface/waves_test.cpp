@@ -1,12 +1,11 @@
 #include <complex>
 
+#include "host/base/constants.h"
 #include "host/base/error.h"
 #include "tests/surface/map_statistics.h"
 
 namespace mica {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 WavesSurface waves(int resolution = 128, double patch_meters = 200, double time_seconds = 0) {
   WavesSurface description;

@@ -3,17 +3,17 @@
 
 #include <cmath>
 
-#include "host/engine/accuracy.h"
-#include "host/engine/map_query.h"
-#include "host/engine/pyramid_level_batches.h"
-#include "host/engine/pyramid_query.h"
+#include "host/base/constants.h"
+#include "host/methods/map/map_query.h"
+#include "host/methods/pyramid/pyramid_level_batches.h"
+#include "host/methods/pyramid/pyramid_query.h"
 #include "host/reference/oracle.h"
+#include "host/verify/accuracy.h"
 
 namespace mica {
 namespace {
 
 constexpr int kResolution = 32;
-constexpr double kPi = 3.14159265358979323846;
 
 Surface bumps() {
   std::vector<Eigen::Vector2d> normals;

@@ -8,7 +8,7 @@
 #include <string>
 #include <tuple>
 
-#include "host/engine/triangle_evaluator.h"
+#include "host/methods/triangles/triangle_evaluator.h"
 #include "host/reference/oracle.h"
 
 namespace mica {

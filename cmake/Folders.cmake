@@ -1,0 +1,39 @@
+# A folder of host/ is a target, compiled in one or a few pieces: most of a file's compile time is the headers that
+# its neighbours include as well.
+
+# mica_folder(FOLDER [NOT_IN_LIBRARY]): host/FOLDER/*.cpp as objects, which mica_collect gives to a library.
+function(mica_folder folder)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "NOT_IN_LIBRARY" "" "")
+  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/host/${folder}/*.cpp)
+  if(NOT sources)
+    return()
+  endif()
+  string(REPLACE / _ name mica_${folder})
+  add_library(${name} OBJECT ${sources})
+  set_target_properties(${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 12)
+  target_link_libraries(${name} PRIVATE mica_options mica_libraries)
+  if(NOT arg_NOT_IN_LIBRARY)
+    set_property(GLOBAL APPEND PROPERTY MICA_FOLDERS ${name})
+  endif()
+endfunction()
+
+function(mica_collect library)
+  get_property(folders GLOBAL PROPERTY MICA_FOLDERS)
+  foreach(folder ${folders})
+    target_sources(${library} PRIVATE $<TARGET_OBJECTS:${folder}>)
+  endforeach()
+endfunction()
+
+# The text of every kernel, as a source of `target`.
+function(mica_embed_kernels target)
+  file(GLOB_RECURSE kernels CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/kernels/*.cl ${PROJECT_SOURCE_DIR}/kernels/*.h)
+  set(output ${PROJECT_BINARY_DIR}/kernel_sources.cpp)
+  add_custom_command(
+    OUTPUT ${output}
+    COMMAND ${CMAKE_COMMAND} -DKERNELS=${PROJECT_SOURCE_DIR}/kernels -DOUTPUT=${output} -P
+            ${PROJECT_SOURCE_DIR}/cmake/EmbedKernels.cmake
+    DEPENDS ${kernels} ${PROJECT_SOURCE_DIR}/cmake/EmbedKernels.cmake
+    COMMENT "Embedding kernels")
+  target_sources(${target} PRIVATE ${output})
+  set_source_files_properties(${output} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+endfunction()

@@ -1,0 +1,37 @@
+# What Mica is built on, and the flags of its own sources.
+find_package(Threads REQUIRED)
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(fmt REQUIRED)
+find_package(spdlog REQUIRED)
+find_package(TBB REQUIRED)
+find_package(embree 3 REQUIRED)
+find_package(tomlplusplus REQUIRED)
+find_package(CLI11 REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(OpenCL REQUIRED)
+find_package(Boost REQUIRED)
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(xxhash REQUIRED IMPORTED_TARGET libxxhash)
+# Debian's CMake package of OpenImageIO insists on the command line tools; pkg-config does not.
+pkg_check_modules(OpenImageIO REQUIRED IMPORTED_TARGET OpenImageIO)
+
+add_library(mica_libraries INTERFACE)
+target_link_libraries(
+  mica_libraries INTERFACE Threads::Threads Eigen3::Eigen fmt::fmt spdlog::spdlog TBB::tbb embree
+                           tomlplusplus::tomlplusplus CLI11::CLI11 nlohmann_json::nlohmann_json OpenCL::OpenCL
+                           Boost::headers PkgConfig::xxhash PkgConfig::OpenImageIO)
+
+# Warnings and sanitizers, for every target of this project.
+add_library(mica_options INTERFACE)
+target_compile_options(mica_options INTERFACE -Wall -Wextra)
+if(MICA_DEVELOPER)
+  target_compile_options(mica_options INTERFACE -Werror)
+endif()
+target_include_directories(mica_options INTERFACE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/include
+                                                  ${PROJECT_SOURCE_DIR}/kernels)
+target_compile_definitions(mica_options INTERFACE MICA_VERSION="${PROJECT_VERSION}")
+if(MICA_SANITIZE)
+  target_compile_options(mica_options INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=all
+                                                -fno-omit-frame-pointer)
+  target_link_options(mica_options INTERFACE -fsanitize=address,undefined)
+endif()

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "host/device/device.h"
+#include "host/methods/evaluator.h"
+#include "host/surface/surface.h"
+
+namespace mica::bench {
+
+/// An evaluator of the registry with its knobs set.
+struct Contender {
+  std::string evaluator;
+  int elements = 1;
+  std::string label, knob;
+};
+
+/// Every evaluator that `make_evaluator` knows; those whose elements can be chosen once for each of
+/// `elements`.
+std::vector<Contender> contenders(const std::vector<int>& elements);
+
+/// A contender on a surface, ready to answer.
+struct Prepared {
+  Contender contender;
+  std::unique_ptr<Evaluator> evaluator;  ///< null when it does not take the surface
+  std::string refused;                   ///< why
+  /// The same with a kernel that answers how much it computes in place of densities; null when it cannot
+  /// count.
+  std::unique_ptr<Evaluator> counter;
+  double flops_a_count = 0;  ///< a multiply-add is two
+};
+
+/// Builds every contender on the surface, which has to outlive them. Throws DeviceError.
+std::vector<Prepared> prepare(const std::vector<Contender>& contenders, Device& device,
+                              const Surface& surface);
+
+}  // namespace mica::bench

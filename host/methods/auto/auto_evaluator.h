@@ -1,0 +1,120 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "host/device/device.h"
+#include "host/methods/evaluator.h"
+#include "host/surface/surface.h"
+
+namespace mica {
+
+class PyramidEvaluator;
+class PyramidStore;
+
+/// Queries that are alike: footprints of one octave, roughnesses of half an octave.
+struct QueryClass {
+  int size = 0;       ///< floor of log2 of sqrt(2) times the smaller standard deviation in texels
+  int roughness = 0;  ///< of 2 log2 (roughness / 0.02)
+
+  friend bool operator<(const QueryClass& a, const QueryClass& b) {
+    return a.size != b.size ? a.size < b.size : a.roughness < b.roughness;
+  }
+};
+
+QueryClass class_of(const Query& query, int map_width, int map_height);
+
+/// Queries of a job that calibration may look at.
+struct CalibrationSample {
+  std::vector<Query> queries;                ///< of every class in random order
+  std::map<QueryClass, double> counts = {};  ///< of all the job's queries; of other classes it has many
+};
+
+/// Up to `each` queries of every class among queries 0 to count - 1: those whose numbers hash lowest.
+/// @param scale how many queries of the job each of these stands for.
+CalibrationSample calibration_sample(std::size_t count, std::size_t each, int map_width, int map_height,
+                                     const std::function<Query(std::size_t)>& query, double scale = 1);
+
+/// What `auto` chose for a class, and why.
+struct AutoChoice {
+  QueryClass kind;
+  std::string evaluator;       ///< in words: "gaussians, 2 a texel and axis"
+  std::size_t samples = 0;     ///< queries that it was judged by
+  double relative_l2 = 0;      ///< of these
+  double upper_bound = 0;      ///< of the relative L2 of all queries of the class, at 95% confidence
+  double typical_density = 0;  ///< sum of squares of the samples' densities over their sum
+  double cost = 0;             ///< ns of one core that a query is estimated to take
+};
+
+/// `auto`: for each class of a job's queries the cheapest evaluator that keeps a tolerance, as a sample of
+/// them tells at 95% confidence. Candidates are pyramids of several precisions, mixtures, and `triangles`,
+/// which keeps 1e-4 and is what they are compared with. What is cheapest is told by counting elements, not by
+/// a clock: the same queries get the same answers.
+class AutoEvaluator : public Evaluator {
+ public:
+  /// @param tolerance relative L2 over a class's queries, kLeastTolerance or more. `device` and `surface`
+  /// must outlive this. Throws UsageError for a smaller tolerance.
+  /// @param looking_seconds of a core that the expected densities of a class may take, for more than 16.
+  AutoEvaluator(Device& device, const Surface& surface, double tolerance, double looking_seconds = 2);
+  ~AutoEvaluator() override;
+  static constexpr double kLeastTolerance = 5e-4;
+  static constexpr std::size_t kMostSamples = 16384;  ///< of a class, that calibration can use
+
+  /// Chooses for every class of the sample, whose queries stand in random order; the first 256 of a class are
+  /// used, up to kMostSamples where these cannot tell, and fewer where they take long. Queries of other
+  /// classes go to `triangles`, and so do those of classes that are too small to repay a structure.
+  void calibrate(const CalibrationSample& sample);
+  double tolerance() const { return tolerance_; }
+  const std::vector<AutoChoice>& choices() const { return choices_; }
+
+  /// How far `density`, the answer to a query, may be off: the class's error at 95% confidence, of the
+  /// density where that is larger than is typical, and else of its geometric mean with the typical one.
+  double error_estimate(const Query& query, double density) const;
+
+  std::unique_ptr<PendingDensities> start(const std::vector<Query>& queries) override;
+  std::string name() const override { return "auto"; }
+  std::size_t device_bytes() const override;
+  double build_seconds() const override;
+  double device_seconds() const override;
+
+ private:
+  struct Candidate;
+  /// Queries of a class in random order, and the densities of those looked at so far.
+  struct Samples {
+    const std::vector<Query>& queries;
+    double in_job = 0;               ///< queries of the class that the job has
+    std::size_t counted = 0;         ///< of them that costs are told from
+    std::size_t most = 0;            ///< that errors may be told from
+    Candidate* reference = nullptr;  ///< what they are compared with
+    double reference_error = 0;      ///< upper bound of its relative L2
+    std::vector<float> expected = {};
+  };
+  enum class Verdict { keeps, breaks, costs_more };
+
+  AutoChoice choose(const QueryClass& kind, Samples samples);
+  /// Compares with a precise pyramid in place of triangles, where these show that it is precise.
+  void refer_to_pyramid(Samples* samples);
+  /// @param choice its cost is the one to beat, and then the candidate's; and its error.
+  Verdict judge(Candidate* candidate, Samples* samples, AutoChoice* choice);
+  /// Nanoseconds of a core that a query takes, by the first `count`.
+  double cost(Candidate* candidate, const std::vector<Query>& queries, std::size_t count);
+  double build_cost(const Candidate& candidate) const;  ///< core nanoseconds
+  bool is_chosen(const Candidate& candidate) const;
+  Evaluator* evaluator(Candidate* candidate);
+  PyramidEvaluator* pyramid(Candidate* candidate);  ///< the same, of one that is a pyramid
+
+  Device& device_;
+  const Surface& surface_;
+  double tolerance_, looking_seconds_;
+  std::shared_ptr<PyramidStore> store_;  ///< of the candidates that are pyramids
+  std::vector<Candidate> candidates_;
+  std::size_t precise_pyramid_ = 0;                              ///< of these
+  std::unique_ptr<Evaluator> flops_counter_, elements_counter_;  // while it calibrates
+  std::map<QueryClass, std::size_t> candidate_of_;
+  std::vector<AutoChoice> choices_;
+};
+
+}  // namespace mica

@@ -1,0 +1,32 @@
+#pragma once
+
+#include "host/base/query.h"
+#include "host/surface/description.h"
+
+namespace mica {
+
+/// Nanoseconds of one core, of a query, of one block of the map that its footprint reaches, and of one thing
+/// that is counted of it; and of building the structure, of a texel of the map. Measured on one machine: only
+/// their ratios matter. `auto_costs` fits them.
+struct CostModel {
+  double query, block, count, texel;
+
+  double of(double blocks, double counted) const { return query + block * blocks + count * counted; }
+};
+
+/// What one block is to the walks of kernels/map/walk_leaves.h: how many the square around a footprint
+/// touches.
+double blocks_reached(const Query& query, int map_width, int map_height);
+
+/// Of `gaussians` with so many elements a texel and axis, 1, 2 or 4. What is counted are the elements of
+/// kCountedMixture: its structure is the smallest, and tells as much.
+CostModel gaussians_cost(int elements);
+constexpr int kCountedMixture = 1;
+
+/// By the floating-point operations.
+CostModel triangles_cost(Interpolation interpolation);
+
+/// By the elements.
+CostModel pyramid_cost();
+
+}  // namespace mica

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <optional>
+
+#include "host/base/stopwatch.h"
+#include "host/methods/beckmanns/lobe_query.h"
+#include "host/methods/beckmanns/lobe_sampler.h"
+#include "host/methods/beckmanns/slope_footprint.h"
+#include "host/methods/make_patch_brdf.h"
+#include "host/methods/map/map_batches.h"
+
+namespace mica {
+
+/// `beckmanns`: the BRDF of a mixture of Beckmann lobes, [Che18] Eq. 7, without Fresnel:
+///     f_P(o, i) = D_P(h) / (4 I(o) I(i)),    I(o) = A_P(o) / G1(o) = integral of <o, w> D_P(w) dw    (Eq.
+///     11),
+/// in which the projected areas A_P cancel. Nothing bounces twice.
+class BeckmannBrdf : public PatchBrdf {
+ public:
+  /// Builds the mixture and uploads it. Throws what `build_lobes` throws.
+  BeckmannBrdf(Device& device, const Surface& surface, const PatchBrdfSettings& settings);
+
+  std::vector<BrdfValue> evaluate(const std::vector<BrdfQuery>& queries) override;
+  /// Light counts as the patch receives it, by the projected area A(i) of its mean normal and not by i.g: the
+  /// two are the same where the mean normal is g, and only with the first no patch scatters more than it
+  /// gets.
+  std::vector<Albedo> energy(const std::vector<ViewQuery>& queries) override;
+  std::vector<BrdfSample> sample(const std::vector<SampleQuery>& queries) override;
+
+  std::string name() const override { return "beckmanns"; }
+  std::size_t device_bytes() const override { return device_bytes_; }
+  double build_seconds() const override { return build_seconds_; }
+  double device_seconds() const override {
+    return densities_ ? densities_->device_seconds() : patches_->device_seconds();
+  }
+
+ private:
+  /// D of a query's half vector, I of its directions, and the projected area A(i) of the mean normal.
+  struct Parts {
+    double density = 0, view_area = 0, light_area = 0, light_projected = 0;
+  };
+  /// @param queries with both directions above the horizon.
+  std::vector<Parts> parts(const std::vector<BrdfQuery>& queries);
+  std::vector<Parts> geometric_parts(const std::vector<BrdfQuery>& queries);
+  Albedo albedo(const ViewQuery& from);
+  std::vector<Parts> patch_parts(const std::vector<BrdfQuery>& queries);
+
+  Masking masking_;
+  Stopwatch watch_;      ///< of the constructor
+  LobeStructure lobes_;  ///< also on the host: samples are drawn there
+  LobeGrid grid_;
+  LobeSampler sampler_;
+  std::vector<SlopeLevel> levels_;
+  double squared_slope_ = 0;  ///< mean over the map
+  double cutoff_, build_seconds_ = 0;
+  std::size_t device_bytes_ = 0;
+  std::optional<MapBatches<device_types::mica_lobe_query>> densities_;  ///< `geometric`
+  std::optional<MapBatches<device_types::mica_patch_query>> patches_;   ///< the others
+};
+
+}  // namespace mica

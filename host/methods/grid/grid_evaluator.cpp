@@ -1,0 +1,121 @@
+#include "host/methods/grid/grid_evaluator.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+
+#include "host/base/error.h"
+
+namespace mica {
+namespace {
+
+double seconds_of(const cl::Event& event) {
+  return 1e-9 * static_cast<double>(event.getProfilingInfo<CL_PROFILING_COMMAND_END>() -
+                                    event.getProfilingInfo<CL_PROFILING_COMMAND_START>());
+}
+
+}  // namespace
+
+std::string grid_kernel_options(Distribution distribution, const GridFeatures& features) {
+  return fmt::format("-DMICA_DISTRIBUTION={} -DMICA_GLINT_COLORS={} -DMICA_GLINT_ROULETTE={}",
+                     distribution == Distribution::beckmann ? 0 : 1, features.colors,
+                     features.roulette ? 1 : 0);
+}
+
+/// Queries on the device and the memory that it reads and writes meanwhile.
+class PendingGrid : public GridDensities {
+ public:
+  PendingGrid(std::size_t queries, int colors) : rows(static_cast<std::size_t>(colors)) {
+    for (std::vector<float>& row : rows) row.resize(queries);
+  }
+  ~PendingGrid() override {
+    for (const cl::Event& event : done) clWaitForEvents(1, &event());
+  }
+
+  std::vector<float> wait() override {
+    try {
+      if (!done.empty()) cl::Event::waitForEvents(done);
+      for (const cl::Event& kernel : kernels) *device_seconds += seconds_of(kernel);
+    } catch (const cl::Error& error) {
+      throw opencl_error(error, "evaluating grid");
+    }
+    for (std::vector<float>& row : rows) {
+      for (float& density : row) {
+        if (!std::isfinite(density)) throw DeviceError("evaluating grid: a density is not finite");
+        density = std::max(density, 0.0f);
+      }
+    }
+    if (rows.size() == 1) return rows.front();
+    std::vector<float> densities = rows.front();
+    for (std::size_t color = 1; color < rows.size(); ++color)
+      for (std::size_t n = 0; n < densities.size(); ++n) densities[n] += rows[color][n];
+    return densities;
+  }
+  float density_of_color(std::size_t color, std::size_t query) const override { return rows[color][query]; }
+
+  std::deque<GridBatch> batches;  // a deque: what the device reads stays where it is
+  std::vector<std::vector<float>> rows;
+  std::vector<cl::Buffer> buffers;  // kept, so that memory does not depend on who is faster, host or device
+  std::vector<cl::Event> kernels, done;
+  std::shared_ptr<double> device_seconds;
+};
+
+GridEvaluator::GridEvaluator(Device& device, const GlintGrid& grid, std::optional<WaveForm> wave_form,
+                             std::size_t batch_queries, GridFeatures features)
+    : device_(device), grid_(grid), features_(features), wave_form_(wave_form.value_or(device.wave_form())) {
+  const std::string problem = glint_grid_problem(grid);
+  if (!problem.empty()) throw UsageError("glints: " + problem);
+  const std::size_t fits =
+      device.info().allocation_bytes / (device_types::MICA_GLINT_FIELDS * sizeof(std::int32_t));
+  batch_queries_ = std::clamp<std::size_t>(batch_queries, 1, fits - device_types::MICA_GLINT_PADDING);
+  kernel_ =
+      device.kernel("grid/grid.cl", "grid", grid_kernel_options(grid.distribution, features), wave_form_);
+}
+
+std::unique_ptr<PendingDensities> GridEvaluator::start(const std::vector<Query>& queries) {
+  return start(queries, {grid_.point()});
+}
+
+std::unique_ptr<GridDensities> GridEvaluator::start(const std::vector<Query>& queries,
+                                                    const std::vector<GlintPoint>& points) {
+  auto pending = std::make_unique<PendingGrid>(queries.size(), features_.colors);
+  pending->device_seconds = device_seconds_;
+  for (std::size_t first = 0; first < queries.size(); first += batch_queries_) {
+    const std::size_t count = std::min(batch_queries_, queries.size() - first);
+    enqueue(to_grid_batch(queries, first, count, points), first, count, pending.get());
+  }
+  return pending;
+}
+
+void GridEvaluator::enqueue(GridBatch batch, std::size_t first, std::size_t count, PendingGrid* pending) {
+  pending->batches.push_back(std::move(batch));
+  const GridBatch& kept = pending->batches.back();
+  const std::size_t bytes = kept.fields.size() * sizeof(std::int32_t);
+  const cl::Buffer fields = device_.buffer(bytes, CL_MEM_READ_ONLY, "a batch of queries");
+  const std::size_t row_bytes = kept.pitch * sizeof(float);
+  const cl::Buffer densities =
+      device_.buffer(row_bytes * pending->rows.size(), CL_MEM_WRITE_ONLY, "a batch of densities");
+  try {
+    device_.queue().enqueueWriteBuffer(fields, CL_FALSE, 0, bytes, kept.fields.data());
+    kernel_.setArg(0, fields);
+    kernel_.setArg(1, static_cast<cl_int>(kept.pitch));
+    kernel_.setArg(2, densities);
+    const std::size_t items = wave_form_ == WaveForm::items ? kept.pitch : kept.pitch / kWaveLanes;
+    cl::Event kernel_done;
+    device_.queue().enqueueNDRangeKernel(kernel_, cl::NullRange, items, kWaveLanes, nullptr, &kernel_done);
+    pending->buffers.insert(pending->buffers.end(), {fields, densities});
+    pending->kernels.push_back(kernel_done);
+    for (std::size_t color = 0; color < pending->rows.size(); ++color) {
+      device_.queue().enqueueReadBuffer(densities, CL_FALSE, color * row_bytes, count * sizeof(float),
+                                        pending->rows[color].data() + first, nullptr,
+                                        &pending->done.emplace_back());
+    }
+    device_.queue().flush();
+  } catch (const cl::Error& error) {
+    throw opencl_error(error, "running grid");
+  }
+}
+
+}  // namespace mica

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <optional>
+
+#include "host/device/device.h"
+#include "host/methods/beckmanns/lobe_query.h"
+#include "host/methods/beckmanns/slope_footprint.h"
+#include "host/methods/evaluator.h"
+#include "host/methods/gaussians/mixture_evaluator.h"
+#include "host/methods/map/map_batches.h"
+#include "host/surface/surface.h"
+
+namespace mica {
+
+/// `smooth`: one Beckmann lobe a footprint, with the mean and the covariance of its slopes;
+/// kernels/smooth/smooth.cl.
+class SmoothEvaluator : public Evaluator {
+ public:
+  /// Builds the pyramid of slopes and uploads it. `device` must outlive the evaluator. Throws what
+  /// `build_lobes` throws.
+  SmoothEvaluator(Device& device, const Surface& surface, const MixtureSettings& settings = {});
+
+  std::unique_ptr<PendingDensities> start(const std::vector<Query>& queries) override;
+  std::string name() const override { return "smooth"; }
+  std::size_t device_bytes() const override { return batches_->device_bytes(); }
+  double build_seconds() const override { return build_seconds_; }
+  double device_seconds() const override { return batches_->device_seconds(); }
+
+ private:
+  LobeGrid grid_;
+  std::vector<SlopeLevel> levels_;
+  double build_seconds_ = 0;
+  std::optional<MapBatches<device_types::mica_smooth_query>> batches_;
+};
+
+}  // namespace mica

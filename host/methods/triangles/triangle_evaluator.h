@@ -1,0 +1,42 @@
+#pragma once
+
+#include <optional>
+
+#include "host/device/device.h"
+#include "host/methods/evaluator.h"
+#include "host/methods/map/map_batches.h"
+#include "host/surface/surface.h"
+#include "kernels/types.h"
+
+namespace mica {
+
+struct TriangleSettings {
+  /// Weight, of the largest, at which culling may drop a texel. Many texels can lie just beyond the cutoff:
+  /// 3.5 times this, of the density's peak, is lost where it shows most.
+  double cutoff_error = 1e-7;
+  std::size_t batch_queries =
+      1 << 17;  ///< queries a launch, at most; less where the device's memory asks for it
+  bool count_flops =
+      false;  ///< densities become the floating-point operations of their integrals, for benchmarks
+  std::optional<WaveForm> wave_form;  ///< default: what suits the device
+};
+
+/// `triangles`: the triangulated map, integrated exactly. [Yan14] Eq. 6; kernels/triangles/triangles.cl.
+class TriangleEvaluator : public Evaluator {
+ public:
+  /// Builds the map's structures and uploads them. `device` must outlive the evaluator.
+  TriangleEvaluator(Device& device, const Surface& surface, const TriangleSettings& settings = {});
+
+  std::unique_ptr<PendingDensities> start(const std::vector<Query>& queries) override;
+  std::string name() const override { return "triangles"; }
+  std::size_t device_bytes() const override { return batches_->device_bytes(); }
+  double build_seconds() const override { return build_seconds_; }
+  double device_seconds() const override { return batches_->device_seconds(); }
+
+ private:
+  Interpolation interpolation_;
+  double cutoff_, build_seconds_ = 0;
+  std::optional<MapBatches<device_types::mica_map_query>> batches_;
+};
+
+}  // namespace mica

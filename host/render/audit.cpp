@@ -1,0 +1,85 @@
+#include "host/render/audit.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "host/reference/glint_grid.h"
+#include "host/reference/oracle.h"
+
+namespace mica {
+namespace {
+
+constexpr double kOracleTolerance = 1e-7;  // a thousandth of what is promised
+
+/// SplitMix64's finaliser: a bijection whose bits all depend on all of `x`.
+std::uint64_t mix(std::uint64_t x) {
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+  return x ^ (x >> 31);
+}
+
+bool lower_key(const AuditSample& a, const AuditSample& b) {
+  return a.key < b.key;
+}
+
+}  // namespace
+
+void AuditSampler::offer(std::uint64_t pixel, std::uint64_t ordinal, const Query& query, float density,
+                         int evaluator, const GlintPoint& glints) {
+  if (samples_ == 0) return;
+  const std::uint64_t key = mix(mix(mix(seed_ + 0x9e3779b97f4a7c15u) ^ pixel) ^ ordinal);
+  if (heap_.size() == samples_) {
+    if (key >= heap_.front().key) return;
+    std::pop_heap(heap_.begin(), heap_.end(), lower_key);
+    heap_.pop_back();
+  }
+  heap_.push_back({key, query, density, evaluator, glints});
+  std::push_heap(heap_.begin(), heap_.end(), lower_key);
+}
+
+std::vector<AuditSample> AuditSampler::samples() const {
+  std::vector<AuditSample> sorted = heap_;
+  std::sort(sorted.begin(), sorted.end(), lower_key);
+  return sorted;
+}
+
+AuditResult audit(const std::vector<AuditSample>& samples, const std::vector<const Surface*>& surfaces) {
+  AuditResult result;
+  result.samples = samples.size();
+  if (samples.empty()) return result;
+  std::vector<double> reference(samples.size());
+  for (std::size_t n = 0; n < samples.size(); ++n)
+    if (!surfaces[static_cast<std::size_t>(samples[n].evaluator)])
+      reference[n] = reference::GlintProcess(samples[n].glints).density_of(samples[n].query);
+  for (std::size_t surface = 0; surface < surfaces.size(); ++surface) {
+    if (!surfaces[surface]) continue;
+    std::vector<std::size_t> places;
+    std::vector<Query> queries;
+    for (std::size_t n = 0; n < samples.size(); ++n) {
+      if (samples[n].evaluator != static_cast<int>(surface)) continue;
+      places.push_back(n);
+      queries.push_back(samples[n].query);
+    }
+    if (queries.empty()) continue;
+    const std::vector<reference::OracleResult> answers =
+        reference::Oracle(*surfaces[surface], kOracleTolerance).evaluate(queries);
+    for (std::size_t n = 0; n < places.size(); ++n) reference[places[n]] = answers[n].density;
+  }
+
+  const double peak = *std::max_element(reference.begin(), reference.end());
+  double squares = 0, reference_squares = 0;
+  std::vector<double> errors;
+  for (std::size_t n = 0; n < samples.size(); ++n) {
+    const double difference = std::abs(samples[n].density - reference[n]);
+    squares += difference * difference;
+    reference_squares += reference[n] * reference[n];
+    errors.push_back(difference == 0 ? 0 : difference / (reference[n] + 0.01 * peak));
+  }
+  std::sort(errors.begin(), errors.end());
+  result.relative_l2 = reference_squares > 0 ? std::sqrt(squares / reference_squares) : 0;
+  result.percentile_99 = errors[static_cast<std::size_t>(0.99 * static_cast<double>(errors.size() - 1))];
+  result.maximum = errors.back();
+  return result;
+}
+
+}  // namespace mica

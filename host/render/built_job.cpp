@@ -1,0 +1,267 @@
+#include "host/render/built_job.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "host/base/stopwatch.h"
+#include "host/methods/auto/auto_evaluator.h"
+#include "host/methods/grid/grid_brdf.h"
+#include "host/methods/make_evaluator.h"
+#include "host/methods/make_patch_brdf.h"
+#include "host/methods/ndf_brdf.h"
+#include "host/render/glint_plan.h"
+#include "host/scene/keyframes.h"
+#include "host/surface/in_time.h"
+
+namespace mica {
+namespace {
+
+constexpr double kUnusedAlpha = 0.1;  // of materials that no shape has
+
+/// Beckmann roughness of a map as a whole, for Smith's G: slopes of variance alpha^2 / 2 an axis, and the
+/// roughness.
+double masking_alpha(const Surface& surface, double roughness) {
+  double sum = 0;
+  for (const Eigen::Vector2d& s : surface.normals()) sum += s.squaredNorm() / (1 - s.squaredNorm());
+  const double slope_variance = sum / static_cast<double>(surface.normals().size());
+  return std::sqrt(slope_variance + 2 * roughness * roughness);
+}
+
+}  // namespace
+
+BuiltJob::BuiltJob(const Job& job, const Plan& plan, Device& device)
+    : job_(job),
+      plan_(plan),
+      device_(device),
+      frame_(job.frames.first),
+      surfaces_(make_surfaces()),
+      scene_(make_scene()) {
+  const Stopwatch watch;
+  evaluators_.resize(surfaces_.size());
+  glints_.resize(surfaces_.size());
+  brdfs_.resize(surfaces_.size());
+  for (std::size_t n = 0; n < surfaces_.size(); ++n) build_evaluator(n);
+  build_seconds_ = watch.seconds();
+}
+
+void BuiltJob::build_evaluator(std::size_t n) {
+  const PlannedEvaluator& planned = plan_.evaluators[n];
+  past_device_seconds_ += device_seconds_of(n);
+  brdfs_[n].reset();  // buffers go before the new ones come
+  evaluators_[n].reset();
+  glints_[n] = nullptr;
+  if (planned.asks_densities) evaluators_[n] = make_density_evaluator(n);
+  if (planned.patch_brdf || plan_.gathers_light) brdfs_[n] = make_brdf(n);
+}
+
+std::unique_ptr<PatchBrdf> BuiltJob::make_brdf(std::size_t n) const {
+  const PlannedEvaluator& planned = plan_.evaluators[n];
+  if (planned.glints_material >= 0)
+    return std::make_unique<GridBrdf>(device_, *job_.scene.materials[planned.glints_material].glints);
+  if (planned.patch_brdf)
+    return make_patch_brdf(planned.evaluator, device_, *surfaces_[n],
+                           {planned.masking, planned.elements, planned.compensation, planned.energy});
+  // Of the densities, that of triangles alone is that of the surface's normals, and not an approximation.
+  const auto draws =
+      planned.evaluator == "triangles" ? NdfBrdf::Draws::surface_normals : NdfBrdf::Draws::smooth_lobe;
+  return std::make_unique<NdfBrdf>(*evaluators_[n], *surfaces_[n], draws);
+}
+
+std::unique_ptr<Evaluator> BuiltJob::make_density_evaluator(std::size_t n) {
+  const PlannedEvaluator& planned = plan_.evaluators[n];
+  if (planned.glints_material >= 0) {
+    auto glints = make_glint_evaluator(job_.scene.materials[planned.glints_material], device_);
+    glints_[n] = glints.get();
+    return glints;
+  }
+  if (planned.evaluator == "auto") return calibrated_evaluator(n);
+  return make_evaluator(planned.evaluator, device_, *surfaces_[n], planned.elements);
+}
+
+/// `auto`, calibrated with the queries of some rows of the image.
+std::unique_ptr<Evaluator> BuiltJob::calibrated_evaluator(std::size_t n) {
+  constexpr int most_rows = 24;
+  const Surface& surface = *surfaces_[n];
+  const int height = job_.image.height, rows = std::min(height, most_rows);
+  std::vector<Query> queries;
+  for (int row = 0; row < rows; ++row)
+    for (const GlintQuery& glint : scene_.trace((2 * row + 1) * height / (2 * rows), 1).queries)
+      if (plan_.evaluator_of_material[glint.material] == static_cast<int>(n)) queries.push_back(glint.query);
+  const double tolerance = job_.accuracy.tolerance;
+  const bool for_one_frame = moves(job_.surfaces[plan_.evaluators[n].surface_index]);
+  double scale = static_cast<double>(height) / rows;
+  if (!for_one_frame) scale *= job_.frames.last - job_.frames.first + 1;
+  if (plan_.gathers_light) scale *= 1 + job_.image.samples;
+  auto evaluator = std::make_unique<AutoEvaluator>(device_, surface, tolerance);
+  evaluator->calibrate(calibration_sample(
+      queries.size(), AutoEvaluator::kMostSamples, surface.width(), surface.height(),
+      [&](std::size_t k) { return queries[k]; }, scale));
+  for (const AutoChoice& choice : evaluator->choices())
+    notes_.push_back(
+        fmt::format("surface {}: auto takes {} for footprints of about {:.3g} texels: relative L2 {:.2g}, at "
+                    "most {:.2g} at 95% "
+                    "confidence by {} of the job's queries; tolerance {}",
+                    plan_.evaluators[n].surface, choice.evaluator, std::exp2(choice.kind.size),
+                    choice.relative_l2, choice.upper_bound, choice.samples, tolerance));
+  return evaluator;
+}
+
+void BuiltJob::go_to(int frame) {
+  frame_ = frame;
+  surface_seconds_ = scene_seconds_ = build_seconds_ = 0;
+  for (std::size_t n = 0; n < surfaces_.size(); ++n) {
+    if (!surfaces_[n] || !moves(job_.surfaces[plan_.evaluators[n].surface_index])) continue;
+    const Stopwatch making;
+    surfaces_[n] = make_surface_of(n, frame);
+    surface_seconds_ += making.seconds();
+    const Stopwatch building;
+    build_evaluator(n);
+    build_seconds_ += building.seconds();
+  }
+  const Stopwatch moving;
+  scene_ = scene_.with_view(camera_at(job_.scene, frame), lights_at(job_.scene, frame), masking_alphas());
+  scene_seconds_ = moving.seconds();
+}
+
+Surface BuiltJob::make_surface_of(std::size_t n, int frame) {
+  const SurfaceDescription& description = job_.surfaces[plan_.evaluators[n].surface_index];
+  SurfaceReport report;
+  Surface surface = make_surface(after(description, job_.frames.seconds(frame)), &report);
+  const auto add = [&](const std::string& text, std::vector<std::string>* texts) {
+    const std::string line = fmt::format("surface {}: {}", description.name, text);
+    if (std::find(texts->begin(), texts->end(), line) == texts->end()) texts->push_back(line);
+  };
+  for (const std::string& note : report.notes) add(note, &notes_);
+  for (const std::string& warning : report.warnings) add(warning, &warnings_);
+  return surface;
+}
+
+std::vector<std::optional<Surface>> BuiltJob::make_surfaces() {
+  const Stopwatch watch;
+  std::vector<std::optional<Surface>> surfaces(plan_.evaluators.size());
+  for (std::size_t n = 0; n < surfaces.size(); ++n)
+    if (plan_.evaluators[n].surface_index >= 0) surfaces[n] = make_surface_of(n, job_.frames.first);
+  surface_seconds_ = watch.seconds();
+  return surfaces;
+}
+
+std::vector<double> BuiltJob::masking_alphas() const {
+  std::vector<double> alphas;
+  for (std::size_t n = 0; n < job_.scene.materials.size(); ++n) {
+    const int evaluator = plan_.evaluator_of_material[n];
+    const MaterialDescription& material = job_.scene.materials[n];
+    if (evaluator < 0) {
+      alphas.push_back(kUnusedAlpha);
+    } else {
+      alphas.push_back(material.glints ? std::sqrt(material.glints->alpha.prod())
+                                       : masking_alpha(*surfaces_[evaluator], material.roughness));
+    }
+  }
+  return alphas;
+}
+
+LightGathering BuiltJob::gathering() const {
+  LightGathering gathering{plan_.gathers_light, {}};
+  for (std::size_t n = 0; n < job_.scene.materials.size(); ++n) {
+    const int evaluator = plan_.evaluator_of_material[n];
+    // A coat bends directions before they reach the patch, and is made for densities.
+    gathering.patch_materials.push_back(evaluator >= 0 && plan_.evaluators[evaluator].patch_brdf &&
+                                        !job_.scene.materials[n].coat);
+  }
+  return gathering;
+}
+
+Scene BuiltJob::make_scene() {
+  const Stopwatch watch;
+  SceneDescription description = job_.scene;
+  description.camera = camera_at(job_.scene, job_.frames.first);
+  description.lights = lights_at(job_.scene, job_.frames.first);
+  Scene scene(description, job_.image.width, job_.image.height, job_.image.subpixels, masking_alphas(),
+              gathering());
+  scene_seconds_ = watch.seconds();
+  return scene;
+}
+
+std::vector<const Surface*> BuiltJob::surfaces() const {
+  std::vector<const Surface*> pointers;
+  for (const std::optional<Surface>& surface : surfaces_) pointers.push_back(surface ? &*surface : nullptr);
+  return pointers;
+}
+
+std::size_t BuiltJob::device_bytes() const {
+  std::size_t bytes = 0;
+  for (std::size_t n = 0; n < evaluators_.size(); ++n) {
+    if (evaluators_[n]) bytes += evaluators_[n]->device_bytes();
+    if (plan_.evaluators[n].patch_brdf) bytes += brdfs_[n]->device_bytes();
+  }
+  return bytes;
+}
+
+double BuiltJob::device_seconds_of(std::size_t n) const {
+  double seconds = evaluators_[n] ? evaluators_[n]->device_seconds() : 0;
+  if (plan_.evaluators[n].patch_brdf && brdfs_[n]) seconds += brdfs_[n]->device_seconds();
+  return seconds;
+}
+
+double BuiltJob::device_seconds() const {
+  double seconds = past_device_seconds_;
+  for (std::size_t n = 0; n < evaluators_.size(); ++n) seconds += device_seconds_of(n);
+  return seconds;
+}
+
+PendingBlock::PendingBlock(TracedRows rows, const BuiltJob& built)
+    : rows_(std::move(rows)), parts_(built.plan().evaluators.size()) {
+  std::vector<std::vector<Query>> queries(parts_.size());
+  for (std::size_t n = 0; n < rows_.queries.size(); ++n) {
+    const int evaluator = built.plan().evaluator_of_material[rows_.queries[n].material];
+    parts_[evaluator].places.push_back(n);
+    queries[evaluator].push_back(rows_.queries[n].query);
+  }
+  for (std::size_t n = 0; n < parts_.size(); ++n) {
+    if (queries[n].empty()) continue;
+    if (built.glints(n)) {
+      start_glints(n, built, queries[n]);
+    } else {
+      parts_[n].pending = built.evaluator(n).start(queries[n]);
+    }
+  }
+}
+
+void PendingBlock::start_glints(std::size_t evaluator, const BuiltJob& built,
+                                const std::vector<Query>& queries) {
+  Part& part = parts_[evaluator];
+  std::vector<GlintPoint> points;
+  points.reserve(queries.size());
+  for (const std::size_t place : part.places) points.push_back(rows_.queries[place].glints);
+  std::unique_ptr<GridDensities> pending = built.glints(evaluator)->start(queries, points);
+  const int material = built.plan().evaluators[evaluator].glints_material;
+  part.colors = built.job().scene.materials[material].glints->colors;
+  if (!part.colors.empty()) part.glints = pending.get();
+  part.pending = std::move(pending);
+}
+
+/// The mean colour of a query's glints goes into its weight.
+void PendingBlock::tint(const Part& part, const std::vector<float>& densities) {
+  for (std::size_t n = 0; n < densities.size(); ++n) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (std::size_t color = 0; color < part.colors.size(); ++color)
+      sum += part.colors[color] * static_cast<double>(part.glints->density_of_color(color, n));
+    Eigen::Vector3f& weight = rows_.queries[part.places[n]].weight;
+    if (densities[n] > 0) weight = weight.cwiseProduct((sum / densities[n]).cast<float>());
+  }
+}
+
+std::vector<float> PendingBlock::wait() {
+  std::vector<float> densities(rows_.queries.size());
+  for (Part& part : parts_) {
+    if (!part.pending) continue;
+    const std::vector<float> answers = part.pending->wait();
+    for (std::size_t n = 0; n < answers.size(); ++n) densities[part.places[n]] = answers[n];
+    if (part.glints) tint(part, answers);
+  }
+  return densities;
+}
+
+}  // namespace mica

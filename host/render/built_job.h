@@ -1,0 +1,99 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host/device/device.h"
+#include "host/job/job.h"
+#include "host/methods/evaluator.h"
+#include "host/methods/grid/grid_evaluator.h"
+#include "host/methods/patch_brdf.h"
+#include "host/render/plan.h"
+#include "host/scene/scene.h"
+#include "host/surface/surface.h"
+
+namespace mica {
+
+/// Everything that a plan names, built: surfaces, scene, and evaluators on the device; at one frame.
+class BuiltJob {
+ public:
+  /// At the job's first frame. All three must outlive it. Throws mica::Error.
+  BuiltJob(const Job& job, const Plan& plan, Device& device);
+
+  /// Goes on to another frame: camera and lights move, surfaces that change are made again, and nothing else.
+  void go_to(int frame);
+  int frame() const { return frame_; }
+
+  const Job& job() const { return job_; }
+  const Plan& plan() const { return plan_; }
+  const Scene& scene() const { return scene_; }
+  /// By PlannedEvaluator; only one that asks for densities.
+  Evaluator& evaluator(std::size_t n) const { return *evaluators_[n]; }
+  /// By PlannedEvaluator; of one that is a patch BRDF, and of all when light is gathered.
+  PatchBrdf& brdf(std::size_t n) const { return *brdfs_[n]; }
+  std::vector<const Surface*> surfaces() const;  ///< by PlannedEvaluator; null without a map
+  GridEvaluator* glints(std::size_t n) const { return glints_[n]; }  ///< the same; null with a map
+
+  // Seconds that the latest frame took to build.
+  double surface_seconds() const { return surface_seconds_; }
+  double scene_seconds() const { return scene_seconds_; }
+  double build_seconds() const { return build_seconds_; }
+  std::size_t device_bytes() const;  ///< of all structures, as allocated
+  double device_seconds() const;     ///< that kernels ran so far, by the device's clock
+
+  const std::vector<std::string>& notes() const { return notes_; }        ///< of the surfaces
+  const std::vector<std::string>& warnings() const { return warnings_; }  ///< of the surfaces
+
+ private:
+  Surface make_surface_of(std::size_t n, int frame);
+  void build_evaluator(std::size_t n);
+  std::vector<std::optional<Surface>> make_surfaces();
+  std::vector<double> masking_alphas() const;
+  LightGathering gathering() const;
+  double device_seconds_of(std::size_t n) const;
+  Scene make_scene();
+  std::unique_ptr<Evaluator> make_density_evaluator(std::size_t n);
+  std::unique_ptr<Evaluator> calibrated_evaluator(std::size_t n);
+  std::unique_ptr<PatchBrdf> make_brdf(std::size_t n) const;
+
+  const Job& job_;
+  const Plan& plan_;
+  Device& device_;
+  int frame_;
+  double surface_seconds_ = 0, scene_seconds_ = 0, build_seconds_ = 0;
+  double past_device_seconds_ = 0;  // of evaluators that are no more
+  std::vector<std::string> notes_, warnings_;
+  std::vector<std::optional<Surface>> surfaces_;  // by PlannedEvaluator
+  Scene scene_;
+  std::vector<std::unique_ptr<Evaluator>> evaluators_;
+  std::vector<GridEvaluator*> glints_;  // those of evaluators_ that are
+  std::vector<std::unique_ptr<PatchBrdf>> brdfs_;
+};
+
+/// The densities of a block of traced rows, on their way from all evaluators.
+class PendingBlock {
+ public:
+  PendingBlock(TracedRows rows, const BuiltJob& built);
+
+  /// Once waited for, the weights of glints are tinted by their colours.
+  const TracedRows& rows() const { return rows_; }
+  /// D of every query, in the order of rows().queries. Call once.
+  std::vector<float> wait();
+
+ private:
+  struct Part {
+    std::vector<std::size_t> places;
+    std::unique_ptr<PendingDensities> pending;
+    const GridDensities* glints = nullptr;  // `pending`, when it has colours
+    std::vector<Eigen::Vector3d> colors;
+  };
+  void start_glints(std::size_t evaluator, const BuiltJob& built, const std::vector<Query>& queries);
+  void tint(const Part& part, const std::vector<float>& densities);
+
+  TracedRows rows_;
+  std::vector<Part> parts_;  // by evaluator
+};
+
+}  // namespace mica

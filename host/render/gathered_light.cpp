@@ -1,0 +1,132 @@
+#include "host/render/gathered_light.h"
+
+#include <limits>
+
+#include "host/microfacet/low_discrepancy.h"
+#include "host/render/surface_light.h"
+#include "host/scene/shading.h"
+#include "host/surface/random.h"
+
+namespace mica {
+namespace {
+
+/// Independent random numbers of one point.
+enum Stream : std::uint64_t {
+  kLightScramble,
+  kSmoothScramble,
+  kSmoothLobe,
+  kBrdfKey,
+  kSmoothPath,
+  kBrdfPath
+};
+
+Color mean_color(const MaterialDescription& material) {
+  if (!material.glints || material.glints->colors.empty()) return Color::Ones();
+  Color sum = Color::Zero();
+  for (const Eigen::Vector3d& color : material.glints->colors) sum += color;
+  return sum / static_cast<double>(material.glints->colors.size());
+}
+
+}  // namespace
+
+GatheredLight::GatheredLight(const GatheringContext& context, const LitPoint& point, std::uint64_t key)
+    : context_(context),
+      point_(point),
+      material_(context.scene.materials()[point.material]),
+      key_(key),
+      view_(point.frame.to_local(point.to_eye)),
+      crossing_(context.scene.coat(point.material), view_),
+      smooth_(material_, context.scene.coat(point.material), context.scene.masking_alpha(point.material),
+              SmoothMaterial::Lobes::without_normals),
+      tint_(mean_color(material_)) {}
+
+bool GatheredLight::faces(const Eigen::Vector3d& world) const {
+  return world.dot(point_.frame.z) >= min_cosine && world.dot(point_.frame.face_normal) >= min_cosine;
+}
+
+/// Of one draw in the mean over the pixel.
+double GatheredLight::share() const {
+  const ImageSettings& image = context_.image;
+  return 1 / (static_cast<double>(image.samples) * image.subpixels * image.subpixels);
+}
+
+/// The share of a draw in the environment's radiance; zero where the point does not see it.
+Color GatheredLight::seen_radiance(const Eigen::Vector3d& world) const {
+  if (!faces(world)) return Color::Zero();
+  const Color radiance = context_.scene.environment().radiance(world);
+  if (radiance.isZero(0) || context_.scene.geometry().occluded(point_.hit, world, kFar)) return Color::Zero();
+  return share() * radiance;
+}
+
+/// What comes from a direction that the material drew with a density of `pdf`: from afar, weighted against
+/// the draws towards the light, or from another surface.
+Color GatheredLight::drawn_radiance(const Eigen::Vector3d& local, double pdf, std::uint64_t path) const {
+  const Eigen::Vector3d world = point_.frame.to_world(local);
+  const Color radiance = seen_radiance(world);
+  const int bounces = context_.image.max_bounces - 1;
+  if (radiance.isZero(0) && bounces > 0 && faces(world))
+    return share() * surface_light(context_.scene, ray_from(point_.hit, world), bounces, path);
+  return radiance * (pdf / (pdf + (uses_lights() ? context_.scene.environment().pdf(world) : 0)));
+}
+
+void GatheredLight::draw() {
+  const auto samples = static_cast<std::uint32_t>(context_.image.samples);
+  const bool shines = !context_.scene.environment().is_black();
+  for (std::uint32_t n = 0; n < samples && shines && uses_lights(); ++n) draw_light(n);
+  for (std::uint32_t n = 0; n < samples && uses_brdf() && !smooth_.is_black(); ++n) draw_smooth(n);
+}
+
+void GatheredLight::draw_light(std::uint32_t n) {
+  const Environment& environment = context_.scene.environment();
+  const std::uint64_t scramble = synthesis::random_bits(key_, kLightScramble, 0);
+  const Eigen::Vector3d world = environment.sample(low_discrepancy_point(n, scramble));
+  const LightDraw draw{point_.frame.to_local(world), seen_radiance(world), environment.pdf(world)};
+  if (draw.radiance.isZero(0) || !(draw.pdf > 0)) return;
+  draws_.push_back(draw);
+  if (smooth_.is_black()) return;
+  const double pdf = draw.pdf + (uses_brdf() ? smooth_.pdf(view_, draw.local) : 0);
+  sum_ += smooth_.value(view_, draw.local).cwiseProduct(draw.radiance) / pdf;
+}
+
+void GatheredLight::draw_smooth(std::uint32_t n) {
+  const std::uint64_t scramble = synthesis::random_bits(key_, kSmoothScramble, 0);
+  const Eigen::Vector2d point = low_discrepancy_point(n, scramble);
+  const double lobe = synthesis::random_unit(key_, kSmoothLobe, n);
+  const Eigen::Vector3d local = smooth_.sample(view_, {point.x(), point.y(), lobe});
+  const double pdf = smooth_.pdf(view_, local);
+  if (!(pdf > 0)) return;
+  const Color radiance = drawn_radiance(local, pdf, synthesis::random_bits(key_, kSmoothPath, n));
+  sum_ += smooth_.value(view_, local).cwiseProduct(radiance) / pdf;
+}
+
+BrdfQuery GatheredLight::query(const LightDraw& draw) const {
+  return {point_.footprint, crossing_.view_below(), crossing_.below(draw.local), material_.roughness};
+}
+
+SampleQuery GatheredLight::sample_query(std::size_t n) const {
+  return {{point_.footprint, crossing_.view_below(), material_.roughness},
+          synthesis::random_bits(key_, kBrdfKey, n)};
+}
+
+void GatheredLight::add(const LightDraw& draw, const BrdfValue& value) {
+  const BounceFresnel fresnel(material_.specular, crossing_.view_below(), crossing_.below(draw.local));
+  const Color reflected = value.single * fresnel.single + value.multiple * fresnel.multiple;
+  const double pdf = uses_brdf() ? value.pdf * crossing_.density_scale(draw.local) : 0;
+  sum_ += tint_.cwiseProduct(reflected).cwiseProduct(draw.radiance) *
+          (crossing_.value_scale(draw.local) / (draw.pdf + pdf));
+}
+
+void GatheredLight::add(const BrdfSample& sample, std::size_t n) {
+  if (!(sample.pdf > 0)) return;
+  const Eigen::Vector3d below = sample.light.cast<double>(), local = crossing_.above(below);
+  if (local.z() < min_cosine) return;
+  const double density_scale = crossing_.density_scale(local);
+  const Color radiance =
+      drawn_radiance(local, sample.pdf * density_scale, synthesis::random_bits(key_, kBrdfPath, n));
+  if (radiance.isZero(0)) return;
+  const BounceFresnel fresnel(material_.specular, crossing_.view_below(), below);
+  const Color weight = sample.weight_single * fresnel.single + sample.weight_multiple * fresnel.multiple;
+  sum_ += tint_.cwiseProduct(weight).cwiseProduct(radiance) * (crossing_.value_scale(local) / density_scale);
+}
+
+}  // namespace mica

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "host/base/query.h"
+#include "host/job/job.h"
+#include "host/methods/patch_brdf.h"
+#include "host/render/plan.h"
+#include "host/scene/coat_crossing.h"
+#include "host/scene/scene.h"
+#include "host/scene/smooth_material.h"
+
+namespace mica {
+
+/// A direction that was drawn by where light comes from, and that the point sees.
+struct LightDraw {
+  Eigen::Vector3d local;  ///< unit, in the point's frame
+  Color radiance;         ///< into the pixel per unit of what reflects it
+  double pdf;
+};
+
+/// What the points of a job have in common.
+struct GatheringContext {
+  const Scene& scene;
+  const ImageSettings& image;
+  Techniques techniques;
+};
+
+/// Gathers the light that one point reflects into its pixel. Two steps: `draw` does all that needs no answer
+/// of the material's BRDF; then the answers are added, in any order that is always the same.
+class GatheredLight {
+ public:
+  /// @param key all random numbers are a hash of it. The others must outlive this.
+  GatheredLight(const GatheringContext& context, const LitPoint& point, std::uint64_t key);
+
+  const LitPoint& point() const { return point_; }
+
+  /// Draws directions towards the light; what the lobes without glints reflect is then done.
+  void draw();
+  const std::vector<LightDraw>& draws() const { return draws_; }
+
+  /// Questions to the material's BRDF: about a draw, and for direction `n` of its own.
+  BrdfQuery query(const LightDraw& draw) const;
+  SampleQuery sample_query(std::size_t n) const;
+
+  /// Adds the answers.
+  void add(const LightDraw& draw, const BrdfValue& value);
+  void add(const BrdfSample& sample, std::size_t n);
+
+  /// Radiance into the pixel.
+  const Color& sum() const { return sum_; }
+
+ private:
+  bool uses_lights() const { return context_.techniques != Techniques::brdf; }
+  bool uses_brdf() const { return context_.techniques != Techniques::lights; }
+  bool faces(const Eigen::Vector3d& world) const;
+  double share() const;
+  Color seen_radiance(const Eigen::Vector3d& world) const;
+  Color drawn_radiance(const Eigen::Vector3d& local, double pdf, std::uint64_t path) const;
+  void draw_light(std::uint32_t n);
+  void draw_smooth(std::uint32_t n);
+
+  const GatheringContext& context_;
+  const LitPoint& point_;
+  const MaterialDescription& material_;
+  std::uint64_t key_;
+  Eigen::Vector3d view_;  // in the point's frame
+  CoatCrossing crossing_;
+  SmoothMaterial smooth_;
+  Color tint_;  // mean colour of a material's glints
+  std::vector<LightDraw> draws_;
+  Color sum_ = Color::Zero();
+};
+
+}  // namespace mica

@@ -1,0 +1,219 @@
+#include "host/render/plan.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <set>
+
+#include "host/base/error.h"
+#include "host/methods/beckmanns/lobes.h"
+#include "host/methods/beckmanns/slope_pyramid.h"
+#include "host/methods/cavities/footprint_energy.h"
+#include "host/methods/gaussians/mixture.h"
+#include "host/methods/make_patch_brdf.h"
+#include "host/methods/map/map_structure.h"
+#include "host/methods/pyramid/pyramid_evaluator.h"
+#include "host/render/glint_plan.h"
+#include "host/scene/scene.h"
+#include "host/surface/map_size.h"
+#include "kernels/types.h"
+
+namespace mica {
+namespace {
+
+constexpr int kBatchesInFlight = 2;  // one on the device while the next is traced
+
+const char* name_of(Interpolation interpolation) {
+  switch (interpolation) {
+    case Interpolation::nearest:
+      return "nearest";
+    case Interpolation::bilinear:
+      return "bilinear";
+    case Interpolation::bicubic:
+      return "bicubic";
+  }
+  return "";
+}
+
+/// What the evaluator takes on the device, and its kernel.
+void plan_structure(PlannedEvaluator* planned) {
+  const int width = planned->width, height = planned->height, elements = planned->elements;
+  planned->kernel = planned->evaluator + ".cl";
+  if (planned->evaluator == "beckmanns") {
+    const std::size_t lobes = lobe_structure_bytes(width, height, elements);
+    planned->device_bytes = (planned->asks_densities ? 2 : 1) * lobes;
+    if (planned->masking != Masking::geometric) {
+      planned->device_bytes += slope_pyramid_bytes(width * elements, height * elements, false);
+      planned->kernel = "beckmann_patches.cl";
+    }
+  } else if (planned->evaluator == "smooth") {
+    planned->device_bytes = slope_pyramid_bytes(width * elements, height * elements, true);
+  } else if (planned->evaluator == "cavities") {
+    planned->device_bytes = map_structure_bytes(width, height);
+    if (planned->energy == LostEnergy::table) planned->host_bytes += footprint_energy_bytes(width, height);
+    planned->kernel += fmt::format(" -DMICA_INTERPOLATION={} -DMICA_SEEDS={}",
+                                   static_cast<int>(planned->interpolation), elements);
+  } else if (planned->evaluator == "normalmap") {
+    planned->host_bytes *= 2;  // keeps the map, and needs no device
+    planned->kernel = "none";
+  } else if (planned->evaluator == "pyramid" || planned->evaluator == "auto") {
+    planned->device_bytes =
+        map_structure_bytes(width, height) + pyramid_levels_bytes(width, height);  // at most
+    if (planned->evaluator == "auto") planned->kernel = "chosen from a sample of the job's queries";
+  } else {
+    planned->device_bytes = planned->evaluator == "gaussians" ? gaussian_mixture_bytes(width, height)
+                                                              : map_structure_bytes(width, height);
+    planned->kernel += fmt::format(" -DMICA_INTERPOLATION={}", static_cast<int>(planned->interpolation));
+  }
+}
+
+PlannedEvaluator plan_evaluator(const Job& job, int surface_index, const MaterialDescription& material) {
+  const SurfaceDescription& surface = job.surfaces[surface_index];
+  const MapSize size = map_size(surface);
+  PlannedEvaluator planned;
+  planned.surface = surface.name;
+  planned.evaluator = material.ndf;
+  planned.elements = material.elements, planned.masking = material.masking;
+  planned.compensation = material.compensation, planned.energy = material.energy;
+  const std::vector<std::string>& patches = patch_brdf_names();
+  planned.patch_brdf = std::find(patches.begin(), patches.end(), material.ndf) != patches.end();
+  planned.surface_index = surface_index;
+  planned.width = size.width, planned.height = size.height;
+  planned.interpolation = surface.interpolation;
+  planned.host_bytes = sizeof(Eigen::Vector2d) * size.width * size.height;
+  return planned;
+}
+
+/// Index of the evaluator that a material needs, planned now if it is the first to need it.
+int evaluator_for(const Job& job, const MaterialDescription& material, Plan* plan) {
+  std::vector<PlannedEvaluator>* planned = &plan->evaluators;
+  if (material.glints) return plan_glints(job.scene.materials, material, plan);
+  const auto surface = std::find_if(job.surfaces.begin(), job.surfaces.end(),
+                                    [&](const SurfaceDescription& s) { return s.name == material.surface; });
+  const int surface_index = static_cast<int>(surface - job.surfaces.begin());
+  const auto found = std::find_if(planned->begin(), planned->end(), [&](const PlannedEvaluator& p) {
+    return p.surface_index == surface_index && p.evaluator == material.ndf &&
+           p.elements == material.elements && p.masking == material.masking &&
+           p.compensation == material.compensation && p.energy == material.energy;
+  });
+  const int index = static_cast<int>(found - planned->begin());
+  if (found == planned->end()) planned->push_back(plan_evaluator(job, surface_index, material));
+  PlannedEvaluator& used = (*planned)[index];
+  used.materials.push_back(material.name);
+  used.asks_densities |= !used.patch_brdf || material.coat.has_value();
+  return index;
+}
+
+std::vector<std::string> channels_for(const std::vector<std::string>& aovs) {
+  std::vector<std::string> channels = {"R", "G", "B"};
+  const auto add = [&](const std::string& aov, std::initializer_list<const char*> parts) {
+    if (std::find(aovs.begin(), aovs.end(), aov) == aovs.end()) return;
+    for (const char* part : parts) channels.push_back(aov + "." + part);
+  };
+  add("ndf", {"Y"});
+  add("uv", {"U", "V"});
+  add("footprint", {"CUU", "CUV", "CVV"});
+  add("normal", {"X", "Y", "Z"});
+  add("queries", {"Y"});
+  add("error", {"Y"});
+  return channels;
+}
+
+/// `error` is asked only of evaluators that say something of their error.
+void check_estimates(const Plan& plan) {
+  if (std::count(plan.channels.begin(), plan.channels.end(), "error.Y") == 0) return;
+  for (const PlannedEvaluator& planned : plan.evaluators)
+    if (planned.evaluator != "auto" && planned.evaluator != "triangles")
+      throw UsageError(fmt::format(
+          "image.aovs: \"error\" wants materials with ndf \"auto\" or \"triangles\"; material {} has \"{}\"",
+          planned.materials.front(), planned.evaluator));
+}
+
+double mebibytes(std::size_t bytes) {
+  return static_cast<double>(bytes) / (1 << 20);
+}
+
+/// The audit and the channel `ndf.Y` are of densities, which lights that are multiplied with a BRDF never ask
+/// for.
+std::vector<std::string> missing_densities(const Job& job, const Plan& plan) {
+  std::vector<std::string> asked, warnings;
+  if (job.audit.samples > 0) asked.emplace_back("[audit]");
+  if (std::find(plan.channels.begin(), plan.channels.end(), "ndf.Y") != plan.channels.end())
+    asked.emplace_back("the AOV ndf");
+  if (asked.empty()) return warnings;
+  for (const PlannedEvaluator& e : plan.evaluators)
+    if (e.patch_brdf && !e.asks_densities)
+      warnings.push_back(fmt::format(
+          "{} {} nothing of material {}: its light is that of the BRDF of {}, and not of a density",
+          fmt::join(asked, " and "), asked.size() > 1 ? "see" : "sees", fmt::join(e.materials, ", "),
+          e.evaluator));
+  return warnings;
+}
+
+}  // namespace
+
+Plan make_plan(const Job& job) {
+  Plan plan;
+  plan.gathers_light = !job.scene.environments.empty() || job.image.max_bounces > 1;
+  if (plan.gathers_light) plan.samples = job.image.samples, plan.max_bounces = job.image.max_bounces;
+  std::set<std::string> used;
+  for (const ShapeDescription& shape : job.scene.shapes) {
+    used.insert(shape.material);
+    for (const PartMaterial& part : shape.parts) used.insert(part.material);
+  }
+  for (const MaterialDescription& material : job.scene.materials)
+    plan.evaluator_of_material.push_back(used.count(material.name) ? evaluator_for(job, material, &plan)
+                                                                   : -1);
+
+  plan.channels = channels_for(job.image.aovs);
+  check_estimates(plan);
+  plan.warnings = missing_densities(job, plan);
+  plan.queries_a_batch = kQueriesABatch;
+  const std::size_t queries_a_row = static_cast<std::size_t>(job.image.width) * job.image.subpixels *
+                                    job.image.subpixels *
+                                    std::max<std::size_t>(job.scene.lights.size() + 2 * plan.samples, 1);
+  plan.rows_a_block =
+      static_cast<int>(std::clamp<std::size_t>(kQueriesABatch / queries_a_row, 1, job.image.height));
+
+  const std::size_t block = plan.rows_a_block * queries_a_row;
+  for (PlannedEvaluator& evaluator : plan.evaluators) {
+    if (evaluator.glints_material < 0) plan_structure(&evaluator);  // glints have nothing but their kernel
+    plan.host_bytes += evaluator.host_bytes;
+    plan.device_bytes += evaluator.device_bytes;
+  }
+  plan.device_bytes += kBatchesInFlight * block * (sizeof(device_types::mica_map_query) + sizeof(float));
+  plan.host_bytes +=
+      kBatchesInFlight * block *
+      (sizeof(GlintQuery) + sizeof(Query) + sizeof(device_types::mica_map_query) + sizeof(float));
+  plan.host_bytes += sizeof(float) * plan.channels.size() * job.image.width * job.image.height;
+  return plan;
+}
+
+std::string describe(const Plan& plan) {
+  std::string text;
+  for (const PlannedEvaluator& e : plan.evaluators) {
+    if (e.glints_material >= 0) {
+      text += fmt::format("{} for {}: no map, nothing built, kernel {}\n", e.evaluator,
+                          fmt::join(e.materials, ", "), e.kernel);
+      continue;
+    }
+    text += fmt::format("{} on surface {} ({} x {} texels, {}) for {}: {:.1f} MiB on the device, kernel {}\n",
+                        e.evaluator, e.surface, e.width, e.height, name_of(e.interpolation),
+                        fmt::join(e.materials, ", "), mebibytes(e.device_bytes), e.kernel);
+  }
+  if (plan.gathers_light)
+    text += fmt::format(
+        "light from all around: 2 x {} directions a footprint, by the light and by the material, up to "
+        "{} bounces\n",
+        plan.samples, plan.max_bounces);
+  text += fmt::format("channels {}\n", fmt::join(plan.channels, " "));
+  text += fmt::format("blocks of {} rows, batches of at most {} queries\n", plan.rows_a_block,
+                      plan.queries_a_batch);
+  text += fmt::format("memory at most {:.0f} MiB on the device, {:.0f} MiB on the host\n",
+                      mebibytes(plan.device_bytes), mebibytes(plan.host_bytes));
+  for (const std::string& warning : plan.warnings) text += warning + '\n';
+  return text;
+}
+
+}  // namespace mica

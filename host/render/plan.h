@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "host/job/job.h"
+
+namespace mica {
+
+constexpr std::size_t kQueriesABatch = std::size_t{1} << 17;  ///< of one kernel launch, at most
+
+/// One evaluator on one surface: what is built, uploaded and compiled for it.
+struct PlannedEvaluator {
+  std::string surface;       ///< name in the job; empty for "grid", which needs none
+  std::string evaluator;     ///< e.g. "triangles"
+  int surface_index = 0;     ///< into Job::surfaces; -1: none
+  int glints_material = -1;  ///< into SceneDescription::materials: whose glints these are
+  int elements = 1;          ///< of a mixture, a texel and axis
+  Masking masking = Masking::exact;
+  Compensation compensation = Compensation::diffuse;
+  LostEnergy energy = LostEnergy::exact;
+  bool patch_brdf = false;      ///< it is one of patch_brdf_names(), and lights are multiplied with its BRDF
+  bool asks_densities = false;  ///< a material multiplies lights with its density
+  int width = 0, height = 0;
+  Interpolation interpolation = Interpolation::bilinear;
+  std::string kernel;          ///< file and options; several with commas between them
+  std::size_t host_bytes = 0;  ///< of the surface
+  std::size_t device_bytes = 0;
+  std::vector<std::string> materials;  ///< that use it
+};
+
+/// Which draws of directions estimate the light from all around; either alone is right too, and noisier.
+enum class Techniques { both, lights, brdf };
+
+/// All that a job needs and nothing else. Surfaces and materials that no shape uses do not appear.
+struct Plan {
+  std::vector<PlannedEvaluator> evaluators;
+  std::vector<int> evaluator_of_material;  ///< by index of SceneDescription::materials; -1: not used
+  std::vector<std::string> channels;       ///< of the image, in order
+  bool gathers_light = false;              ///< from all around: `samples` a footprint
+  int samples = 0, max_bounces = 1;        ///< as the job asks for
+  Techniques techniques = Techniques::both;
+  int rows_a_block = 0;                          ///< image rows that are traced and evaluated together
+  std::size_t queries_a_batch = 0;               ///< of one kernel launch, at most
+  std::size_t host_bytes = 0, device_bytes = 0;  ///< of the whole, if every ray meets a glinting surface
+  std::vector<std::string> warnings;             ///< what the job asks for and will not get
+};
+
+/// Derives the plan from the job; map files are opened for their size only. Throws FileError.
+Plan make_plan(const Job& job);
+
+/// The plan in words, a line an item.
+std::string describe(const Plan& plan);
+
+}  // namespace mica

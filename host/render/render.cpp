@@ -1,0 +1,123 @@
+#include "host/render/render.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "host/base/stopwatch.h"
+#include "host/base/version.h"
+#include "host/render/built_job.h"
+#include "host/render/error_estimates.h"
+#include "host/render/film.h"
+#include "host/render/gather_light.h"
+
+namespace mica {
+namespace {
+
+/// Offers a block's queries to the audit.
+void offer(const TracedRows& rows, const std::vector<float>& densities, const Plan& plan, int width,
+           AuditSampler* sampler) {
+  std::uint64_t ordinal = 0;
+  for (std::size_t n = 0; n < densities.size(); ++n) {
+    const GlintQuery& glint = rows.queries[n];
+    ordinal = n > 0 && rows.queries[n - 1].pixel == glint.pixel ? ordinal + 1 : 0;
+    const std::uint64_t pixel = static_cast<std::uint64_t>(rows.first_row) * width + glint.pixel;
+    sampler->offer(pixel, ordinal, glint.query, densities[n], plan.evaluator_of_material[glint.material],
+                   glint.glints);
+  }
+}
+
+/// Traces and evaluates all rows; the device evaluates one block while the host traces the next.
+void render_rows(const BuiltJob& built, const RenderProgress& progress, AuditSampler* sampler,
+                 RenderResult* result) {
+  const Stopwatch total;
+  const ImageSettings& image = built.job().image;
+  const int rows_a_block = built.plan().rows_a_block;
+  const std::vector<std::string>& channels = built.plan().channels;
+  const bool wants_errors = std::find(channels.begin(), channels.end(), "error.Y") != channels.end();
+  Film film(image.width, image.height, built.plan().channels);
+  std::optional<PendingBlock> in_flight;
+  for (int row = 0; row < image.height || in_flight; row += rows_a_block) {
+    std::optional<PendingBlock> next;
+    if (row < image.height) {
+      const Stopwatch tracing;
+      TracedRows rows = built.scene().trace(row, std::min(rows_a_block, image.height - row));
+      result->seconds.trace += tracing.seconds();
+      const Stopwatch gathering;
+      result->queries += add_lit_brdfs(built, &rows) + gather_light(built, &rows);
+      result->seconds.gather += gathering.seconds();
+      next.emplace(std::move(rows), built);
+    }
+    if (in_flight) {
+      const Stopwatch waiting;
+      const std::vector<float> densities = in_flight->wait();
+      result->seconds.wait += waiting.seconds();
+      film.add(in_flight->rows(), densities,
+               wants_errors ? estimate_errors(built, in_flight->rows(), densities) : std::vector<float>());
+      offer(in_flight->rows(), densities, built.plan(), image.width, sampler);
+      result->queries += densities.size();
+      progress(in_flight->rows().first_row + in_flight->rows().row_count, image.height);
+    }
+    in_flight = std::move(next);
+  }
+  result->image = film.take();
+  result->seconds.render = total.seconds();
+}
+
+std::map<std::string, std::string> describe_image(const Job& job, int frame, const DeviceInfo& device,
+                                                  const AuditResult& audit) {
+  std::map<std::string, std::string> metadata;
+  metadata["mica:version"] = version();
+  metadata["mica:job"] = fmt::format("{:016x}", job.hash);
+  metadata["mica:seed"] = fmt::format("{}", job.seed);
+  if (job.frames.given) metadata["mica:frame"] = fmt::format("{}", frame);
+  metadata["mica:device"] = device.name;
+  if (audit.samples) {
+    metadata["mica:audit"] =
+        fmt::format("{} queries, relative L2 {:.3g}, 99th percentile {:.3g}, maximum {:.3g}", audit.samples,
+                    audit.relative_l2, audit.percentile_99, audit.maximum);
+  }
+  return metadata;
+}
+
+}  // namespace
+
+RenderResult render_frame(BuiltJob& built, int frame, const DeviceInfo& device,
+                          const RenderProgress& progress) {
+  const Stopwatch total;
+  const Job& job = built.job();
+  RenderResult result;
+  result.frame = frame;
+  result.plan = built.plan();
+  double before = 0;  // seconds that building took when this began
+  if (frame == built.frame()) {
+    before = built.surface_seconds() + built.scene_seconds() + built.build_seconds();
+  } else {
+    built.go_to(frame);
+  }
+  const double device_seconds = built.device_seconds();
+  AuditSampler sampler(job.seed, job.audit.samples);
+  render_rows(built, progress, &sampler, &result);
+
+  const Stopwatch auditing;
+  result.audit = audit(sampler.samples(), built.surfaces());
+  result.seconds.audit = auditing.seconds();
+  result.seconds.surfaces = built.surface_seconds();
+  result.seconds.scene = built.scene_seconds();
+  result.seconds.build = built.build_seconds();
+  result.device_bytes = built.device_bytes();
+  result.device_seconds = built.device_seconds() - device_seconds;
+  result.surface_notes = built.notes();
+  result.surface_warnings = built.warnings();
+  result.image.metadata = describe_image(job, frame, device, result.audit);
+  result.seconds.total = before + total.seconds();
+  return result;
+}
+
+RenderResult render(const Job& job, const Plan& plan, Device& device, const RenderProgress& progress) {
+  BuiltJob built(job, plan, device);
+  return render_frame(built, job.frames.first, device.info(), progress);
+}
+
+}  // namespace mica

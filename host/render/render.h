@@ -1,0 +1,50 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "host/device/device.h"
+#include "host/image/image.h"
+#include "host/job/job.h"
+#include "host/render/audit.h"
+#include "host/render/built_job.h"
+#include "host/render/plan.h"
+
+namespace mica {
+
+/// Wall-clock seconds by phase. `render` is tracing and evaluating together, which overlap; `trace` and
+/// `wait` are the host's shares of it: tracing rows, and waiting for densities that were not ready; `gather`
+/// is gathering light from all around, on both.
+struct PhaseSeconds {
+  double surfaces = 0, scene = 0, build = 0, render = 0, trace = 0, gather = 0, wait = 0, audit = 0;
+  double total = 0;
+};
+
+/// A finished image and what was done to make it.
+struct RenderResult {
+  int frame = 0;
+  Image image;
+  Plan plan;
+  PhaseSeconds seconds;
+  std::size_t queries = 0;
+  std::size_t device_bytes = 0;  ///< of all structures, as allocated
+  double device_seconds = 0;     ///< that kernels ran, by the device's clock
+  AuditResult audit;
+  std::vector<std::string> surface_notes, surface_warnings;
+};
+
+/// Called after every block of rows with the rows done; may throw to stop.
+using RenderProgress = std::function<void(int rows_done, int rows)>;
+
+/// Renders one frame of a job by its plan: traces blocks of rows on the host while the device evaluates the
+/// block before. The image depends on the job and the frame alone, bit for bit. Throws mica::Error.
+/// @param built at the job's first frame or at one that was rendered before. The first frame's seconds are
+/// those of everything that it needs; later ones need what changed.
+RenderResult render_frame(BuiltJob& built, int frame, const DeviceInfo& device,
+                          const RenderProgress& progress);
+
+/// Renders the first frame of a job.
+RenderResult render(const Job& job, const Plan& plan, Device& device, const RenderProgress& progress);
+
+}  // namespace mica

@@ -1,0 +1,125 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <fstream>
+#include <string_view>
+
+#include "host/base/error.h"
+#include "host/tables/table.h"
+
+namespace mica::app {
+namespace {
+
+std::string_view trim(std::string_view text) {
+  constexpr std::string_view blanks = " \t\r";
+  const std::size_t first = text.find_first_not_of(blanks);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+std::vector<std::string_view> split(std::string_view line) {
+  std::vector<std::string_view> cells;
+  for (std::size_t comma = line.find(','); comma != std::string_view::npos; comma = line.find(',')) {
+    cells.push_back(trim(line.substr(0, comma)));
+    line.remove_prefix(comma + 1);
+  }
+  cells.push_back(trim(line));
+  return cells;
+}
+
+class CsvReader {
+ public:
+  CsvReader(const std::string& path, const std::vector<std::string>& names, std::size_t required)
+      : path_(path), names_(names), required_(required), stream_(path) {
+    if (!stream_) throw FileError(path + ": no such file, or it cannot be read");
+  }
+
+  Table read() {
+    std::string line;
+    if (!next_line(&line)) fail(fmt::format("no header; expected {}", expected()));
+    read_names(line);
+    Table table;
+    table.columns = order_.size();
+    while (next_line(&line)) {
+      read_row(line, &table.values);
+      ++table.rows;
+    }
+    if (stream_.bad()) throw FileError(path_ + ": cannot be read");
+    return table;
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const {
+    throw UsageError(fmt::format("{}:{}: {}", path_, line_number_, what));
+  }
+  std::string expected() const {
+    std::string text =
+        fmt::format("{}", fmt::join(names_.begin(), names_.begin() + static_cast<long>(required_), ","));
+    if (required_ < names_.size())
+      text +=
+          fmt::format("[,{}]", fmt::join(names_.begin() + static_cast<long>(required_), names_.end(), ","));
+    return text;
+  }
+
+  /// The next line that is not empty.
+  bool next_line(std::string* line) {
+    while (std::getline(stream_, *line)) {
+      ++line_number_;
+      if (!trim(*line).empty()) return true;
+    }
+    return false;
+  }
+
+  void read_names(std::string_view line) {
+    constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
+    if (line.substr(0, byte_order_mark.size()) == byte_order_mark) line.remove_prefix(byte_order_mark.size());
+    line = trim(line);
+    if (line.substr(0, 1) == "#") line = trim(line.substr(1));
+    const std::vector<std::string_view> cells = split(line);
+    for (const std::string_view cell : cells) {
+      const auto found = std::find(names_.begin(), names_.end(), cell);
+      if (found == names_.end()) fail(fmt::format("the header names \"{}\"; expected {}", cell, expected()));
+      const auto column = static_cast<std::size_t>(found - names_.begin());
+      if (std::count(order_.begin(), order_.end(), column))
+        fail(fmt::format("column {} appears twice", *found));
+      order_.push_back(column);
+    }
+    for (std::size_t column = 0; column < names_.size(); ++column)
+      if (!std::count(order_.begin(), order_.end(), column) &&
+          (column < required_ || order_.size() > required_))
+        fail(fmt::format("column {} is missing; expected {}", names_[column], expected()));
+  }
+
+  void read_row(std::string_view line, std::vector<double>* values) const {
+    const std::vector<std::string_view> cells = split(line);
+    if (cells.size() != order_.size())
+      fail(fmt::format("{} values; the header names {} columns", cells.size(), order_.size()));
+    const std::size_t first = values->size();
+    values->resize(first + cells.size());
+    for (std::size_t n = 0; n < cells.size(); ++n) {
+      const char* end = cells[n].data() + cells[n].size();
+      double value = 0;
+      const auto [stop, error] = std::from_chars(cells[n].data(), end, value);
+      if (error != std::errc() || stop != end)
+        fail(fmt::format("column {}: \"{}\" is not a number", names_[order_[n]], cells[n]));
+      (*values)[first + order_[n]] = value;
+    }
+  }
+
+  const std::string& path_;
+  const std::vector<std::string>& names_;
+  const std::size_t required_;
+  std::ifstream stream_;
+  std::size_t line_number_ = 0;
+  std::vector<std::size_t> order_;  // of `names_`, column by column of the file
+};
+
+}  // namespace
+
+Table read_csv(const std::string& path, const std::vector<std::string>& names, std::size_t required) {
+  return CsvReader(path, names, required).read();
+}
+
+}  // namespace mica::app

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host/base/query.h"
+#include "host/tables/table.h"
+
+namespace mica::app {
+
+/// Reads a .npy or .csv file of queries.
+/// @param columns the names of its columns; the last one may be missing.
+/// Throws FileError (unreadable, damaged) or UsageError (other columns).
+Table read_query_table(const std::string& path, const std::vector<std::string>& columns);
+
+/// Throws UsageError naming the first ten of the rows 0 .. count - 1 that cannot be evaluated, and why, and
+/// how many there are. @param problem of a row: why it cannot, or empty.
+void check_rows(const std::string& path, std::size_t count,
+                const std::function<std::string(std::size_t)>& problem);
+
+/// Queries of a file: rows u v cuu cuv cvv s t [roughness], uv in map periods, covariance in uv^2 units, half
+/// vector on the unit disk.
+class QueryTable {
+ public:
+  /// Reads a .npy or .csv file.
+  /// @param roughness of all rows, unless the file has that column. @param option that gives it.
+  /// Throws FileError (unreadable, damaged) or UsageError (other columns, or no roughness at all).
+  QueryTable(const std::string& path, std::optional<double> roughness,
+             const std::string& option = "--roughness");
+
+  std::size_t size() const { return table_.rows; }
+  Query query(std::size_t row) const;
+
+  /// Throws as `check_rows` does. @param problem of a query: why it cannot be evaluated, or empty.
+  void check(const std::function<std::string(const Query&)>& problem) const;
+
+ private:
+  std::string path_;
+  Table table_;
+  double roughness_ = 0;  // where the table has no such column
+};
+
+}  // namespace mica::app

@@ -1,0 +1,100 @@
+#include "host/verify/grid_checks.h"
+
+#include "host/base/constants.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "host/app/interrupt.h"
+#include "host/methods/grid/grid_brdf.h"
+#include "host/reference/glint_draws.h"
+#include "host/surface/random.h"
+
+namespace mica::app {
+namespace {
+
+constexpr double kRelativeBound = 1e-4, kSmoothBound = 1e-6;
+constexpr double kDrawBound = 5e-4;
+
+GlintsDescription glints_of(Distribution distribution, double alpha, double density) {
+  GlintsDescription glints;
+  glints.distribution = distribution;
+  glints.alpha = {alpha, 0.7 * alpha};
+  glints.density = density;
+  glints.stretch = 2;
+  return glints;
+}
+
+/// Footprints from a hundredth of a cell to a hundred, half vectors all over the distribution.
+std::vector<Query> queries_for(const GlintsDescription& glints, const reference::GlintProcess& process) {
+  constexpr std::size_t count = 500;
+  std::uint64_t counter = 0;
+  const auto random = [&] { return synthesis::random_unit(1, 0, counter++); };
+  std::vector<Query> queries(count);
+  for (Query& query : queries) {
+    query.footprint.mean_uv = {random(), random()};
+    query.footprint.cov_uv *= std::pow(0.01 * std::pow(1e4, random()), 2) / glints.density;
+    const double radius = 0.49 * std::sqrt(random()), turn = 2 * kPi * random();
+    query.half_vector = process.from_disk({0.5 + radius * std::cos(turn), 0.5 + radius * std::sin(turn)});
+    query.roughness = 5e-3 * std::pow(20, random());
+  }
+  return queries;
+}
+
+/// The largest error in units of what is allowed; what is no number counts as infinite.
+void take(double error, double allowed, Check* check) {
+  ++check->points;
+  const double ratio = error / allowed;
+  if (!(ratio <= check->worst)) check->worst = std::isnan(ratio) ? HUGE_VAL : ratio;
+}
+
+void check_densities(Device* device, const GlintsDescription& glints, Check* check) {
+  const GlintGrid grid = grid_of(glints);
+  const reference::GlintProcess process(grid.point());
+  const std::vector<Query> queries = queries_for(glints, process);
+  const std::vector<float> densities = GridEvaluator(*device, grid).evaluate(queries);
+  for (std::size_t n = 0; n < queries.size(); ++n) {
+    const double expected = process.density_of(queries[n]),
+                 smooth = process.smooth_density(queries[n].half_vector);
+    take(std::abs(densities[n] - expected), kRelativeBound * expected + kSmoothBound * smooth, check);
+  }
+}
+
+/// Seen from straight above, where half vectors up to 45 degrees have a light above the horizon.
+void check_draws(Device* device, const GlintsDescription& glints, Check* check) {
+  const reference::GlintProcess process(grid_of(glints).point());
+  std::vector<BrdfQuery> lit;
+  std::vector<double> expected;
+  for (const Query& query : queries_for(glints, process)) {
+    const double cosine = std::sqrt(1 - query.half_vector.squaredNorm());
+    if (cosine < 0.75) continue;
+    const Eigen::Vector3d half(query.half_vector.x(), query.half_vector.y(), cosine);
+    lit.push_back({query.footprint, Eigen::Vector3d::UnitZ(),
+                   (2 * cosine * half - Eigen::Vector3d::UnitZ()).normalized(), query.roughness});
+    expected.push_back(reference::glint_draw_density(process, query) / 4);  // of h, then of i: o.h = g.h
+  }
+  const std::vector<BrdfValue> values = GridBrdf(*device, glints).evaluate(lit);
+  for (std::size_t n = 0; n < values.size(); ++n)
+    take(std::abs(values[n].pdf - expected[n]), kDrawBound * expected[n], check);
+}
+
+}  // namespace
+
+std::vector<Check> check_grid(Device* device) {
+  std::vector<Check> checks;
+  for (const Distribution distribution : {Distribution::trowbridge_reitz, Distribution::beckmann}) {
+    const std::string name = distribution == Distribution::beckmann ? "beckmann" : "ggx";
+    Check densities{"grid: " + name}, draws{"grid: draws of " + name};
+    for (const double alpha : {0.1, 0.4, 0.8}) {
+      check_interrupt();
+      const GlintsDescription glints = glints_of(distribution, alpha, 1e6);
+      check_densities(device, glints, &densities);
+      check_draws(device, glints, &draws);
+    }
+    checks.push_back(densities), checks.push_back(draws);
+  }
+  return checks;
+}
+
+}  // namespace mica::app

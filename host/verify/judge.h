@@ -1,0 +1,40 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "host/methods/evaluator.h"
+#include "host/methods/grid/grid_query.h"
+#include "host/reference/oracle.h"
+#include "host/surface/surface.h"
+
+namespace mica {
+
+/// How an evaluator did against its reference in double precision.
+struct Verdict {
+  double worst = 0;  ///< largest error, in units of what is allowed
+  std::size_t queries = 0;
+  std::string worst_query;  ///< and what was answered to it
+  std::string limitation;   ///< why more than what is allowed is no mistake, or empty
+};
+
+/// Knows what an evaluator promises, and the reference that it is promised against.
+class Judge {
+ public:
+  virtual ~Judge() = default;
+
+  /// Highest density that can be right.
+  virtual double highest(const Query& query) const = 0;
+  /// @param probes each of one footprint.
+  virtual Verdict judge(Evaluator* evaluator, const Surface& surface,
+                        std::vector<std::vector<Query>> probes) const = 0;
+};
+
+/// Of an evaluator on a map. The surface and the oracle have to outlive it.
+std::unique_ptr<Judge> make_judge(const std::string& evaluator, const Surface& surface,
+                                  const reference::Oracle& oracle);
+
+std::unique_ptr<Judge> make_grid_judge(const GlintGrid& grid);
+
+}  // namespace mica

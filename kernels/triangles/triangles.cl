@@ -1,0 +1,109 @@
+// `triangles`: the P-NDF of a footprint on a triangulated normal map. [Yan14] Eq. 6.
+//
+// One wave a query. Blocks of 64x64 texels under the footprint are culled sixteen children at a time: block -> tiles
+// of 16x16 -> leaves of 4x4 -> quads. The quads that remain gather in a list and are integrated sixteen at a time.
+
+#include "map/map_cull.h"
+#include "triangles/right_triangles.h"
+#include "triangles/triangle_integral.h"
+#include "types.h"
+#include "wave/wave.h"
+
+// 0: a constant texel, 1: two triangles a quad, 2: Catmull-Rom, 4x4 sub-quads of two triangles each.
+#ifndef MICA_INTERPOLATION
+#define MICA_INTERPOLATION 1
+#endif
+
+// Sixteen quads: lower left corner in texels from the mean; normals less the half vector, in standard deviations of
+// roughness, at the corners 00, 10, 01, 11 (x first).
+typedef struct {
+  wave_float x, y;
+  wave_float s00, s10, s01, s11;
+  wave_float t00, t10, t01, t11;
+} quads;
+#define QUAD_SIZE (MICA_INTERPOLATION == 2 ? 0.25f : 1.0f)
+
+// Both triangles of each quad in lanes where `valid` is set; the diagonal runs from 10 to 01.
+static inline void integrate_quads(global const mica_map_query* query, private const quads* q, wave_int valid, private integrator* out,
+                                   WAVE_SHARED int* scratch) {
+  const float w1x = QUAD_SIZE * query->whiten_1x, w1y = QUAD_SIZE * query->whiten_1y;
+  const float w2x = QUAD_SIZE * query->whiten_2x, w2y = QUAD_SIZE * query->whiten_2y;
+  affine_residual lower, upper;
+  lower.r0.p1 = fma(q->x, query->whiten_1x, q->y * query->whiten_1y);
+  lower.r0.p2 = fma(q->x, query->whiten_2x, q->y * query->whiten_2y);
+  lower.r0.s = q->s00, lower.r0.t = q->t00;
+  lower.m1.p1 = w1x, lower.m1.p2 = w2x, lower.m1.s = q->s10 - q->s00, lower.m1.t = q->t10 - q->t00;
+  lower.m2.p1 = w1y, lower.m2.p2 = w2y, lower.m2.s = q->s01 - q->s00, lower.m2.t = q->t01 - q->t00;
+  upper.r0.p1 = lower.r0.p1 + w1x + w1y, upper.r0.p2 = lower.r0.p2 + w2x + w2y;
+  upper.r0.s = q->s11, upper.r0.t = q->t11;
+  upper.m1.p1 = -w1x, upper.m1.p2 = -w2x, upper.m1.s = q->s01 - q->s11, upper.m1.t = q->t01 - q->t11;
+  upper.m2.p1 = -w1y, upper.m2.p2 = -w2y, upper.m2.s = q->s10 - q->s11, upper.m2.t = q->t10 - q->t11;
+  integrate_triangle_pairs(lower, upper, valid, query->cutoff, out, scratch);
+}
+
+// Quads wait in a list until there are sixteen of them.
+#define QUAD_FIELDS 10
+static inline void integrate_first_quads(global const mica_map_query* query, private wave_list* list,
+                                         private integrator* out, WAVE_SHARED int* scratch) {
+  quads q;
+  q.x = wave_list_field(*list, 0), q.y = wave_list_field(*list, 1);
+  q.s00 = wave_list_field(*list, 2), q.s10 = wave_list_field(*list, 3);
+  q.s01 = wave_list_field(*list, 4), q.s11 = wave_list_field(*list, 5);
+  q.t00 = wave_list_field(*list, 6), q.t10 = wave_list_field(*list, 7);
+  q.t01 = wave_list_field(*list, 8), q.t11 = wave_list_field(*list, 9);
+  const wave_int valid = wave_mask(WAVE_LANE < list->count);
+  wave_list_drop(list, QUAD_FIELDS);
+  integrate_quads(query, &q, valid, out, scratch);
+}
+
+// Integrates the quads in `bits`: at once when all sixteen are, later in company when not.
+static inline void take_quads(global const mica_map_query* query, private const quads* q, uint bits, private wave_list* list,
+                              private integrator* out, WAVE_SHARED int* scratch) {
+  if (bits == 0xffffu) {
+    integrate_quads(query, q, wave_mask(WAVE_LANE >= 0), out, scratch);
+    return;
+  }
+  wave_list_pack(*list, 0, bits, q->x), wave_list_pack(*list, 1, bits, q->y);
+  wave_list_pack(*list, 2, bits, q->s00), wave_list_pack(*list, 3, bits, q->s10);
+  wave_list_pack(*list, 4, bits, q->s01), wave_list_pack(*list, 5, bits, q->s11);
+  wave_list_pack(*list, 6, bits, q->t00), wave_list_pack(*list, 7, bits, q->t10);
+  wave_list_pack(*list, 8, bits, q->t01), wave_list_pack(*list, 9, bits, q->t11);
+  wave_list_count(list, bits);
+  if (list->count >= WAVE_LANES) integrate_first_quads(query, list, out, scratch);
+}
+
+#if MICA_INTERPOLATION == 2
+#include "map/catmull_rom.h"
+#else
+#include "map/texel_quads.h"
+#endif
+
+typedef struct {
+  wave_list list;
+  integrator out;
+} leaf_results;
+
+#define LEAF_TAKE(query, normals, at, i, j, room_i, room_j, gathered, scratch) \
+  take_leaf(query, normals, at, i, j, room_i, room_j, &(gathered)->list, &(gathered)->out, scratch)
+#define LEAF_SURVIVORS surviving_children
+#define LEAF_QUERY mica_map_query
+#define LEAF_NODE_STRIDE MICA_NODE_STRIDE
+#include "map/walk_leaves.h"
+
+// Density of every query, in the order of their slots. Global size: queries (vectors), or 16 a query (items).
+kernel void triangles(global const mica_map_query* restrict queries, int query_count, mica_map_grid grid,
+                      global const int* restrict normals, global const short* restrict block_nodes,
+                      global const short* restrict tile_nodes, global float* restrict density) {
+  WAVE_DECLARE_SCRATCH(scratch);
+  WAVE_SHARED float short_records[RIGHT_RECORDS], long_records[RIGHT_RECORDS];
+  WAVE_SHARED float quad_records[QUAD_FIELDS * WAVE_LIST];
+  if (WAVE_ITEM_INDEX >= query_count) return;
+  global const mica_map_query* query = queries + WAVE_ITEM_INDEX;
+  leaf_results gathered = {{quad_records, 0}, {{0.0f, 0.0f}, {short_records, 0}, {long_records, 0}}};
+  walk_leaves(query, grid, normals, block_nodes, tile_nodes, &gathered, scratch);
+  if (gathered.list.count) integrate_first_quads(query, &gathered.list, &gathered.out, scratch);
+  integrate_rest(&gathered.out, scratch);
+  const float sum = wave_sum(gathered.out.total.sum, scratch);
+  const float area = QUAD_SIZE * QUAD_SIZE;  // of a quad: the integrals are over unit triangles
+  density[query->slot] = MICA_COUNT_FLOPS ? sum : query->scale * area * sum;
+}
