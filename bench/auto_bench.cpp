@@ -14,14 +14,14 @@
 #include <numeric>
 
 #include "bench/bench_maps.h"
-#include "host/base/error.h"
 #include "host/measure/coherent.h"
 #include "host/methods/auto/cost_model.h"
 #include "host/methods/gaussians/mixture_evaluator.h"
 #include "host/methods/pyramid/pyramid_evaluator.h"
 #include "host/methods/triangles/triangle_evaluator.h"
+#include "mica/error.h"
 
-namespace mica::bench {
+namespace mica::host::bench {
 namespace {
 
 constexpr int kRepeats = 11;
@@ -143,17 +143,17 @@ void fit_costs(Device& device, const std::vector<std::string>& names) {
 }
 
 }  // namespace
-}  // namespace mica::bench
+}  // namespace mica::host::bench
 
 int main(int argc, char** argv) {
   try {
     std::vector<std::string> names(argv + 1, argv + argc);
     if (names.empty()) names = {"spectrum", "brushed", "flakes", "scratches"};
-    mica::Device device(0);
-    mica::bench::fit_costs(device, names);
+    mica::host::Device device(0);
+    mica::host::bench::fit_costs(device, names);
     return 0;
   } catch (const mica::Error& error) {
     fmt::print(stderr, "auto_costs: {}\n", error.what());
-    return static_cast<int>(error.code());
+    return 1;
   }
 }

@@ -10,12 +10,12 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "host/base/error.h"
 #include "host/base/stopwatch.h"
 #include "host/measure/coherent.h"
 #include "host/methods/make_patch_brdf.h"
+#include "mica/error.h"
 
-namespace mica::bench {
+namespace mica::host::bench {
 namespace {
 
 constexpr int kRepeats = 11;
@@ -82,13 +82,13 @@ int run(const char* json_path) {
 }
 
 }  // namespace
-}  // namespace mica::bench
+}  // namespace mica::host::bench
 
 int main(int argc, char** argv) {
   try {
-    return mica::bench::run(argc > 1 ? argv[1] : nullptr);
+    return mica::host::bench::run(argc > 1 ? argv[1] : nullptr);
   } catch (const mica::Error& error) {
     fmt::print(stderr, "masking_bench: {}\n", error.what());
-    return static_cast<int>(error.code());
+    return 1;
   }
 }

@@ -6,7 +6,7 @@
 #include "host/surface/random.h"
 #include "host/verify/accuracy.h"
 
-namespace mica::bench {
+namespace mica::host::bench {
 namespace {}  // namespace
 
 Surface make_named(const std::string& name) {
@@ -50,4 +50,4 @@ std::vector<Query> random_queries(const Surface& surface, double sigma_texels, d
   return queries;
 }
 
-}  // namespace mica::bench
+}  // namespace mica::host::bench

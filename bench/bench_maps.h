@@ -7,7 +7,7 @@
 #include "host/base/query.h"
 #include "host/surface/surface.h"
 
-namespace mica::bench {
+namespace mica::host::bench {
 
 /// One of the 2048^2 maps "spectrum", "brushed", "flakes" and "scratches", or that of a file.
 Surface make_named(const std::string& name);
@@ -16,4 +16,4 @@ Surface make_named(const std::string& name);
 std::vector<Query> random_queries(const Surface& surface, double sigma_texels, double roughness,
                                   std::size_t count);
 
-}  // namespace mica::bench
+}  // namespace mica::host::bench

@@ -9,13 +9,13 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "host/base/error.h"
 #include "host/base/stopwatch.h"
 #include "host/measure/coherent.h"
 #include "host/methods/cavities/cavity_brdf.h"
 #include "host/methods/make_patch_brdf.h"
+#include "mica/error.h"
 
-namespace mica::bench {
+namespace mica::host::bench {
 namespace {
 
 constexpr int kRepeats = 11;
@@ -109,13 +109,13 @@ int run(const char* json_path) {
 }
 
 }  // namespace
-}  // namespace mica::bench
+}  // namespace mica::host::bench
 
 int main(int argc, char** argv) {
   try {
-    return mica::bench::run(argc > 1 ? argv[1] : nullptr);
+    return mica::host::bench::run(argc > 1 ? argv[1] : nullptr);
   } catch (const mica::Error& error) {
     fmt::print(stderr, "cavities_bench: {}\n", error.what());
-    return static_cast<int>(error.code());
+    return 1;
   }
 }

@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
-#include "host/base/error.h"
 #include "host/base/stopwatch.h"
 #include "host/measure/coherent.h"
 #include "host/measure/fma_peak.h"
@@ -16,8 +15,9 @@
 #include "host/methods/gaussians/mixture_evaluator.h"
 #include "host/methods/triangles/triangle_evaluator.h"
 #include "host/reference/oracle.h"
+#include "mica/error.h"
 
-namespace mica::bench {
+namespace mica::host::bench {
 namespace {
 
 constexpr int kRepeats = 11;
@@ -113,13 +113,13 @@ int run(const char* json_path) {
 }
 
 }  // namespace
-}  // namespace mica::bench
+}  // namespace mica::host::bench
 
 int main(int argc, char** argv) {
   try {
-    return mica::bench::run(argc > 1 ? argv[1] : nullptr);
+    return mica::host::bench::run(argc > 1 ? argv[1] : nullptr);
   } catch (const mica::Error& error) {
     fmt::print(stderr, "mixtures_bench: {}\n", error.what());
-    return static_cast<int>(error.code());
+    return 1;
   }
 }

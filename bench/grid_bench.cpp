@@ -11,11 +11,11 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "host/base/error.h"
 #include "host/measure/fma_peak.h"
 #include "host/methods/grid/grid_evaluator.h"
+#include "mica/error.h"
 
-namespace mica::bench {
+namespace mica::host::bench {
 namespace {
 
 constexpr int kWidth = 1920, kHeight = 1080, kLights = 3, kRepeats = 15, kRowStep = 8;
@@ -136,13 +136,13 @@ int run(const char* json_path) {
 }
 
 }  // namespace
-}  // namespace mica::bench
+}  // namespace mica::host::bench
 
 int main(int argc, char** argv) {
   try {
-    return mica::bench::run(argc > 1 ? argv[1] : nullptr);
+    return mica::host::bench::run(argc > 1 ? argv[1] : nullptr);
   } catch (const mica::Error& error) {
     fmt::print(stderr, "grid_bench: {}\n", error.what());
-    return static_cast<int>(error.code());
+    return 1;
   }
 }

@@ -7,9 +7,9 @@
 #include <cstdint>
 
 #include "bench/paper_triangle.h"
-#include "host/base/error.h"
+#include "mica/error.h"
 
-namespace mica::bench {
+namespace mica::host::bench {
 namespace {
 
 constexpr float cutoff = 5;  ///< standard deviations, [Yan14] sec. 6
@@ -194,4 +194,4 @@ std::vector<float> PaperRecursion::evaluate(const std::vector<Query>& queries) c
   return densities;
 }
 
-}  // namespace mica::bench
+}  // namespace mica::host::bench

@@ -5,7 +5,7 @@
 #include "host/base/query.h"
 #include "host/surface/surface.h"
 
-namespace mica::bench {
+namespace mica::host::bench {
 
 /// The algorithm of [Yan14] sec. 5 and 6 as a careful C++ programmer would write it today: what `triangles`
 /// is measured against. A quadtree of bounds on (s, t) down to the texel, recursion from the level of the
@@ -38,4 +38,4 @@ class PaperRecursion {
       levels_;  ///< level 0: a texel's quad; in Morton order, so siblings share a cache line
 };
 
-}  // namespace mica::bench
+}  // namespace mica::host::bench

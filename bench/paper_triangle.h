@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace mica::bench {
+namespace mica::host::bench {
 
 /// Coefficients of Q(u, v) = a u^2 + 2b uv + c v^2 + 2d u + 2e v + f.
 struct Quadratic {
@@ -100,4 +100,4 @@ inline double integrate_paper_triangle(const Quadratic& q) {
   return 0.5 * paper::sqrt_pi / root * std::exp(-0.5 * peak) * difference;
 }
 
-}  // namespace mica::bench
+}  // namespace mica::host::bench

@@ -12,7 +12,6 @@
 #include <map>
 
 #include "bench/bench_maps.h"
-#include "host/base/error.h"
 #include "host/base/stopwatch.h"
 #include "host/measure/coherent.h"
 #include "host/methods/auto/auto_evaluator.h"
@@ -22,8 +21,9 @@
 #include "host/methods/pyramid/pyramid_evaluator.h"
 #include "host/methods/triangles/triangle_evaluator.h"
 #include "host/verify/accuracy.h"
+#include "mica/error.h"
 
-namespace mica::bench {
+namespace mica::host::bench {
 namespace {
 
 constexpr int kRepeats = 11;
@@ -258,7 +258,7 @@ int run(std::vector<std::string> names, const Effort& effort) {
 }
 
 }  // namespace
-}  // namespace mica::bench
+}  // namespace mica::host::bench
 
 int main(int argc, char** argv) {
   try {
@@ -269,12 +269,12 @@ int main(int argc, char** argv) {
       names.erase(found, names.end());
       return given;
     };
-    mica::bench::Effort effort;
+    mica::host::bench::Effort effort;
     effort.quick = taken("--quick");
     effort.timed = !taken("--errors");
-    return mica::bench::run(names, effort);
+    return mica::host::bench::run(names, effort);
   } catch (const mica::Error& error) {
     fmt::print(stderr, "pyramid_bench: {}\n", error.what());
-    return static_cast<int>(error.code());
+    return 1;
   }
 }

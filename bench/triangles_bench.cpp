@@ -9,14 +9,14 @@
 #include <numeric>
 
 #include "bench/paper_recursion.h"
-#include "host/base/error.h"
 #include "host/base/stopwatch.h"
 #include "host/measure/coherent.h"
 #include "host/measure/fma_peak.h"
 #include "host/methods/triangles/triangle_evaluator.h"
 #include "host/reference/oracle.h"
+#include "mica/error.h"
 
-namespace mica::bench {
+namespace mica::host::bench {
 namespace {
 
 constexpr int kRepeats = 11;
@@ -96,13 +96,13 @@ int run(const char* json_path) {
 }
 
 }  // namespace
-}  // namespace mica::bench
+}  // namespace mica::host::bench
 
 int main(int argc, char** argv) {
   try {
-    return mica::bench::run(argc > 1 ? argv[1] : nullptr);
+    return mica::host::bench::run(argc > 1 ? argv[1] : nullptr);
   } catch (const mica::Error& error) {
     fmt::print(stderr, "triangles_bench: {}\n", error.what());
-    return static_cast<int>(error.code());
+    return 1;
   }
 }

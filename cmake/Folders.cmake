@@ -11,6 +11,8 @@ function(mica_folder folder)
   string(REPLACE / _ name mica_${folder})
   add_library(${name} OBJECT ${sources})
   set_target_properties(${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 12)
+  # Types of an unnamed namespace have their linkage in the file that a unit includes as well as in the unit.
+  target_compile_options(${name} PRIVATE -Wno-subobject-linkage)
   target_link_libraries(${name} PRIVATE mica_options mica_libraries)
   if(NOT arg_NOT_IN_LIBRARY)
     set_property(GLOBAL APPEND PROPERTY MICA_FOLDERS ${name})

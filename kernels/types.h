@@ -10,7 +10,7 @@
 #include <cstdint>
 #define MICA_INT std::int32_t
 #define MICA_FLOAT float
-namespace mica::device_types {
+namespace mica::host::device_types {
 #endif
 
 // Storage of a normal map. A block is 64x64 texels with an apron of one texel below and left, two above and
@@ -24,12 +24,13 @@ enum {
   MICA_TILE = 16,            // texels a side; sixteen tiles a block
   MICA_LEAF = 4,             // texels a side; sixteen leaves a tile
   MICA_NODE_STRIDE = 64,     // shorts a node: s_min[16], s_max[16], t_min[16], t_max[16]
-  // Shorts a node of a mixture, sixteen of each: an axis x, y; the elements' means along it min, max and across it min, max;
-  // how far elements spread along and across.
+  // Shorts a node of a mixture, sixteen of each: an axis x, y; the elements' means along it min, max and
+  // across it min, max; how far elements spread along and across.
   MICA_MIXTURE_NODE_STRIDE = 128,
   MICA_SPREAD_UNIT = 2,  // of the spreads of `gaussians`, in units of their means
-  // Shorts a leaf of lobes: mean_x[16], mean_y[16], and the rows of the spread's Cholesky factor xx[16], yx[16], yy[16];
-  // then four floats: the mean that the means are counted from, x and y, and the units of means and of spreads.
+  // Shorts a leaf of lobes: mean_x[16], mean_y[16], and the rows of the spread's Cholesky factor xx[16],
+  // yx[16], yy[16]; then four floats: the mean that the means are counted from, x and y, and the units of
+  // means and of spreads.
   MICA_LOBE_LEAF = 88,
   MICA_SLOPE_APRON = 3  // cells right of and above a level of the pyramid of slopes: whole 4x4 cells are read
 };
@@ -88,52 +89,53 @@ typedef struct {
 
 // What is asked of V-shaped cavities about all light from a view. [Che19]
 typedef struct {
-  mica_map_query map;                  // its normals do not matter
-  MICA_FLOAT view_x, view_y, view_z;   // unit, above the horizon
-  MICA_FLOAT roughness;                // standard deviation on the disk
-  MICA_INT seed_i, seed_j;             // of a draw: in [0, width) x [0, height) times the seeds a texel
-  MICA_INT key_low, key_high;          // of its random numbers
-  MICA_FLOAT lobe_sigma;               // of the specular compensation: standard deviation of (i_x, i_y)
+  mica_map_query map;                 // its normals do not matter
+  MICA_FLOAT view_x, view_y, view_z;  // unit, above the horizon
+  MICA_FLOAT roughness;               // standard deviation on the disk
+  MICA_INT seed_i, seed_j;            // of a draw: in [0, width) x [0, height) times the seeds a texel
+  MICA_INT key_low, key_high;         // of its random numbers
+  MICA_FLOAT lobe_sigma;              // of the specular compensation: standard deviation of (i_x, i_y)
 } mica_cavity_query;
 
-// One query of a Gaussian mixture, in texel units. [Yan16]. With tau_i^2 = sigma_i^2 + k, sigma_i and a_i the footprint's
-// standard deviations and axes, k the variance of the elements' position kernel.
+// One query of a Gaussian mixture, in texel units. [Yan16]. With tau_i^2 = sigma_i^2 + k, sigma_i and a_i the
+// footprint's standard deviations and axes, k the variance of the elements' position kernel.
 typedef struct {
-  mica_map_query map;               // its whitening and extent are for culling: of a footprint that is wide enough
-  MICA_FLOAT axis_1x, axis_1y;      // a_1 / tau_1: whitens an element's centre
-  MICA_FLOAT axis_2x, axis_2y;      // a_2 / tau_2
-  MICA_FLOAT blur_1, blur_2;        // sqrt(k) sigma_i / sigma_r: times J a_i / tau_i, what the slice's normals spread by
-  MICA_FLOAT spread_variance;       // what a squared `spread` of a node counts for, in roughnesses squared
-  MICA_FLOAT kernel_variance;       // k
+  mica_map_query map;  // its whitening and extent are for culling: of a footprint that is wide enough
+  MICA_FLOAT axis_1x, axis_1y;  // a_1 / tau_1: whitens an element's centre
+  MICA_FLOAT axis_2x, axis_2y;  // a_2 / tau_2
+  MICA_FLOAT blur_1,
+      blur_2;  // sqrt(k) sigma_i / sigma_r: times J a_i / tau_i, what the slice's normals spread by
+  MICA_FLOAT spread_variance;  // what a squared `spread` of a node counts for, in roughnesses squared
+  MICA_FLOAT kernel_variance;  // k
 } mica_mixture_query;
 
-// One query of a mixture of Beckmann lobes; `map` is in units of an element, and its half_s, half_t are not used.
-// [Che18] Eq. 9.
+// One query of a mixture of Beckmann lobes; `map` is in units of an element, and its half_s, half_t are not
+// used. [Che18] Eq. 9.
 typedef struct {
   mica_map_query map;
   MICA_FLOAT slope_x, slope_y;            // of the half vector,
   MICA_FLOAT slope_rest_x, slope_rest_y;  // and what floats leave of it
   MICA_FLOAT slope_unit;                  // of the bounds of nodes
-  MICA_FLOAT spread_variance;             // what a squared `spread` of a node counts for, in roughnesses squared
+  MICA_FLOAT spread_variance;  // what a squared `spread` of a node counts for, in roughnesses squared
 } mica_lobe_query;
 
 // A footprint on a level of the pyramid of slopes, in cells: a Gaussian of the cells' weights.
 typedef struct {
-  MICA_INT offset;                      // of the level's first number; -1: the footprint is too small for all of them
-  MICA_INT width, height;               // cells a period
-  MICA_FLOAT mean_unit, spread_unit;    // of its numbers
-  MICA_INT cell_i, cell_j;              // mean, whole cells
-  MICA_FLOAT cell_x, cell_y;            // and the rest, in [0, 1)
-  MICA_FLOAT sigma_y, shear, sigma_x;   // y has sigma_y, x given y the mean shear * y and sigma_x
+  MICA_INT offset;         // of the level's first number; -1: the footprint is too small for all of them
+  MICA_INT width, height;  // cells a period
+  MICA_FLOAT mean_unit, spread_unit;   // of its numbers
+  MICA_INT cell_i, cell_j;             // mean, whole cells
+  MICA_FLOAT cell_x, cell_y;           // and the rest, in [0, 1)
+  MICA_FLOAT sigma_y, shear, sigma_x;  // y has sigma_y, x given y the mean shear * y and sigma_x
 } mica_slope_footprint;
 
 // One question of a patch BRDF. [Che18] Eq. 7
 typedef struct {
-  mica_lobe_query lobe;          // of the half vector
+  mica_lobe_query lobe;  // of the half vector
   mica_slope_footprint slopes;
   MICA_FLOAT view_x, view_y, view_z;
   MICA_FLOAT light_x, light_y, light_z;
-  MICA_FLOAT weight;             // of an element at the footprint's mean
+  MICA_FLOAT weight;  // of an element at the footprint's mean
 } mica_patch_query;
 
 // One query of `smooth`.
@@ -155,7 +157,7 @@ static_assert(sizeof(mica_cavity_query) == 100 && offsetof(mica_cavity_query, lo
 static_assert(sizeof(mica_map_grid) == 16 && offsetof(mica_map_grid, blocks_x) == 8);
 static_assert(sizeof(mica_map_query) == 64 && offsetof(mica_map_query, whiten_1x) == 16 &&
               offsetof(mica_map_query, half_s) == 40 && offsetof(mica_map_query, slot) == 60);
-}  // namespace mica::device_types
+}  // namespace mica::host::device_types
 #endif
 
 #undef MICA_INT

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <string>
 
-namespace mica {
+namespace mica::host {
 
 /// A folder of this process, which goes with everything in it when the process ends.
 class ProcessFolder {
@@ -31,4 +31,4 @@ inline std::string temporary_path(const std::string& file) {
   return folder / file;
 }
 
-}  // namespace mica
+}  // namespace mica::host

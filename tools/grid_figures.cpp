@@ -9,14 +9,14 @@
 #include <functional>
 
 #include "host/base/constants.h"
-#include "host/base/error.h"
 #include "host/image/image.h"
 #include "host/methods/grid/grid_brdf.h"
 #include "host/reference/glint_grid.h"
 #include "host/report/svg.h"
 #include "host/surface/random.h"
+#include "mica/error.h"
 
-namespace mica::bench {
+namespace mica::host::bench {
 namespace {
 
 constexpr double kMicroroughness = 0.02, kDensity = 1e6;
@@ -289,13 +289,13 @@ int run(const char* folder) {
 }
 
 }  // namespace
-}  // namespace mica::bench
+}  // namespace mica::host::bench
 
 int main(int argc, char** argv) {
   try {
-    return mica::bench::run(argc > 1 ? argv[1] : nullptr);
+    return mica::host::bench::run(argc > 1 ? argv[1] : nullptr);
   } catch (const mica::Error& error) {
     fmt::print(stderr, "grid_figures: {}\n", error.what());
-    return static_cast<int>(error.code());
+    return 1;
   }
 }

@@ -8,15 +8,15 @@
 #include <cmath>
 #include <string>
 
-#include "host/base/error.h"
 #include "host/base/stopwatch.h"
 #include "host/image/image.h"
 #include "host/measure/point_samples.h"
 #include "host/methods/make_evaluator.h"
 #include "host/render/film.h"
 #include "host/scene/scene.h"
+#include "mica/error.h"
 
-namespace mica::bench {
+namespace mica::host::bench {
 namespace {
 
 constexpr int kSide = 84, kZoom = 3;  // pixels, and how often each is shown
@@ -107,7 +107,7 @@ void run(const std::string& folder) {
 }
 
 }  // namespace
-}  // namespace mica::bench
+}  // namespace mica::host::bench
 
 int main(int argc, char** argv) {
   if (argc != 2) {
@@ -115,10 +115,10 @@ int main(int argc, char** argv) {
     return 2;
   }
   try {
-    mica::bench::run(argv[1]);
+    mica::host::bench::run(argv[1]);
     return 0;
   } catch (const mica::Error& error) {
     fmt::print(stderr, "scratched_sphere: {}\n", error.what());
-    return static_cast<int>(error.code());
+    return 1;
   }
 }

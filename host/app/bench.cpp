@@ -9,7 +9,7 @@
 #include "host/measure/suite.h"
 #include "host/report/bench_report.h"
 
-namespace mica::app {
+namespace mica::host::app {
 namespace {
 
 struct BenchOptions {
@@ -57,4 +57,4 @@ void add_bench(CLI::App& app, Command* chosen) {
   command->callback([=] { *chosen = [=] { return run(*options); }; });
 }
 
-}  // namespace mica::app
+}  // namespace mica::host::app

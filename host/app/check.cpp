@@ -11,7 +11,7 @@
 #include "host/render/plan.h"
 #include "host/report/report.h"
 
-namespace mica::app {
+namespace mica::host::app {
 namespace {
 
 struct CheckOptions {
@@ -55,4 +55,4 @@ void add_check(CLI::App& app, Command* chosen) {
   command->callback([=] { *chosen = [=] { return run(*options); }; });
 }
 
-}  // namespace mica::app
+}  // namespace mica::host::app

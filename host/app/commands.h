@@ -4,7 +4,7 @@
 #include <functional>
 #include <memory>
 
-namespace mica::app {
+namespace mica::host::app {
 
 /// What a subcommand does once the command line is parsed; returns the exit code, throws mica::Error.
 using Command = std::function<int()>;
@@ -19,4 +19,4 @@ void add_devices(CLI::App& app, Command* chosen);
 void add_selftest(CLI::App& app, Command* chosen);
 void add_bench(CLI::App& app, Command* chosen);
 
-}  // namespace mica::app
+}  // namespace mica::host::app

@@ -4,9 +4,9 @@
 #include "host/app/commands.h"
 #include "host/app/json_file.h"
 #include "host/app/output.h"
-#include "host/base/error.h"
+#include "mica/error.h"
 
-namespace mica::app {
+namespace mica::host::app {
 namespace {
 
 int run(const std::string& json_path) {
@@ -40,4 +40,4 @@ void add_devices(CLI::App& app, Command* chosen) {
   command->callback([json_path, chosen] { *chosen = [json_path] { return run(*json_path); }; });
 }
 
-}  // namespace mica::app
+}  // namespace mica::host::app

@@ -13,14 +13,14 @@
 #include "host/app/json_file.h"
 #include "host/app/map_options.h"
 #include "host/app/output.h"
-#include "host/base/error.h"
 #include "host/image/image.h"
 #include "host/methods/cavities/cavity_brdf.h"
 #include "host/methods/make_patch_brdf.h"
 #include "host/methods/map/map_query.h"
 #include "host/tables/query_table.h"
+#include "mica/error.h"
 
-namespace mica::app {
+namespace mica::host::app {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -257,4 +257,4 @@ void add_eval(CLI::App& app, Command* chosen) {
   command->callback([options, chosen] { *chosen = [options] { return run(*options); }; });
 }
 
-}  // namespace mica::app
+}  // namespace mica::host::app

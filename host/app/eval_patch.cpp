@@ -11,15 +11,15 @@
 #include "host/app/evaluation.h"
 #include "host/app/json_file.h"
 #include "host/app/output.h"
-#include "host/base/error.h"
 #include "host/base/stopwatch.h"
 #include "host/image/image.h"
 #include "host/methods/cavities/cavity_brdf.h"
 #include "host/methods/grid/grid_brdf.h"
 #include "host/methods/make_patch_brdf.h"
 #include "host/tables/patch_table.h"
+#include "mica/error.h"
 
-namespace mica::app {
+namespace mica::host::app {
 namespace {
 
 PatchQuantity to_quantity(const std::string& name) {
@@ -191,4 +191,4 @@ int evaluate_patches(const PatchEvaluation& options) {
   return 0;
 }
 
-}  // namespace mica::app
+}  // namespace mica::host::app

@@ -8,7 +8,7 @@
 #include "host/app/map_options.h"
 #include "host/scene/glints_description.h"
 
-namespace mica::app {
+namespace mica::host::app {
 
 /// What `mica eval` was asked for about a patch BRDF.
 struct PatchEvaluation {
@@ -28,4 +28,4 @@ const std::vector<std::string>& patch_quantities();
 /// Runs it; returns the exit code, throws mica::Error.
 int evaluate_patches(const PatchEvaluation& options);
 
-}  // namespace mica::app
+}  // namespace mica::host::app

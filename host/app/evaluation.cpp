@@ -12,13 +12,13 @@
 
 #include "host/app/interrupt.h"
 #include "host/app/progress.h"
-#include "host/base/error.h"
 #include "host/methods/auto/auto_evaluator.h"
 #include "host/methods/grid/grid_evaluator.h"
 #include "host/methods/make_evaluator.h"
 #include "host/reference/oracle.h"
+#include "mica/error.h"
 
-namespace mica::app {
+namespace mica::host::app {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -185,4 +185,4 @@ void check_extension(const std::string& path, const std::vector<std::string>& ex
         fmt::format("{}: expected a file name that ends in {}", path, fmt::join(extensions, " or ")));
 }
 
-}  // namespace mica::app
+}  // namespace mica::host::app

@@ -12,7 +12,7 @@
 #include "host/methods/grid/grid_query.h"
 #include "host/surface/surface.h"
 
-namespace mica::app {
+namespace mica::host::app {
 
 /// Names that `--ndf` takes: every evaluator, and `reference`.
 std::vector<std::string> ndf_names();
@@ -57,4 +57,4 @@ std::vector<float> evaluate_all(Evaluator* evaluator, std::size_t count,
 /// Throws UsageError unless `path` ends in one of `extensions`.
 void check_extension(const std::string& path, const std::vector<std::string>& extensions);
 
-}  // namespace mica::app
+}  // namespace mica::host::app

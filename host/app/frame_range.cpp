@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <optional>
 
-#include "host/base/error.h"
+#include "mica/error.h"
 
-namespace mica::app {
+namespace mica::host::app {
 namespace {
 
 std::optional<int> to_number(std::string_view text) {
@@ -44,4 +44,4 @@ std::string numbered(const std::string& path, int frame) {
   return (file.parent_path() / name).string();
 }
 
-}  // namespace mica::app
+}  // namespace mica::host::app

@@ -4,7 +4,7 @@
 
 #include "host/job/job.h"
 
-namespace mica::app {
+namespace mica::host::app {
 
 /// Leaves of the job's frames those of `--frames`, "A-B" or "A"; all of them when `text` is empty. Throws
 /// UsageError for what is neither, and for frames that the job does not have.
@@ -13,4 +13,4 @@ void choose_frames(const std::string& text, FrameSettings* frames);
 /// "out/ocean.exr" of frame 7 is "out/ocean.0007.exr".
 std::string numbered(const std::string& path, int frame);
 
-}  // namespace mica::app
+}  // namespace mica::host::app

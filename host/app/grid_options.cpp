@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include "host/base/error.h"
+#include "mica/error.h"
 
-namespace mica::app {
+namespace mica::host::app {
 
 void add_grid_options(CLI::App* command, GridOptions* options) {
   const std::string group = "Of --ndf grid, which needs no map";
@@ -72,4 +72,4 @@ GlintsDescription to_glints_description(const GridOptions& options) {
   return glints;
 }
 
-}  // namespace mica::app
+}  // namespace mica::host::app

@@ -8,7 +8,7 @@
 #include "host/methods/grid/grid_query.h"
 #include "host/scene/glints_description.h"
 
-namespace mica::app {
+namespace mica::host::app {
 
 /// Options of `--ndf grid`: a surface of glints that needs no map.
 struct GridOptions {
@@ -26,4 +26,4 @@ void add_grid_options(CLI::App* command, GridOptions* options);
 GlintGrid to_glint_grid(const GridOptions& options);
 GlintsDescription to_glints_description(const GridOptions& options);
 
-}  // namespace mica::app
+}  // namespace mica::host::app

@@ -2,7 +2,7 @@
 
 #include <csignal>
 
-namespace mica::app {
+namespace mica::host::app {
 namespace {
 
 volatile std::sig_atomic_t received = 0;  // a signal handler can reach nothing else
@@ -23,4 +23,4 @@ void check_interrupt() {
   if (received) throw Interrupted(received);
 }
 
-}  // namespace mica::app
+}  // namespace mica::host::app

@@ -1,9 +1,9 @@
 #include "host/app/json_file.h"
 
-#include "host/base/version.h"
 #include "host/image/image.h"
+#include "mica/version.h"
 
-namespace mica::app {
+namespace mica::host::app {
 
 std::string wave_form_name(const DeviceInfo& info) {
   return info.is_cpu ? "vectors" : "items";
@@ -28,4 +28,4 @@ void write_json(const std::string& path, const nlohmann::json& json) {
   write_file_atomically(path, document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
 }
 
-}  // namespace mica::app
+}  // namespace mica::host::app

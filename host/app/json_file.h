@@ -5,7 +5,7 @@
 
 #include "host/device/device.h"
 
-namespace mica::app {
+namespace mica::host::app {
 
 /// What a device reports of itself.
 nlohmann::json describe_device(const DeviceInfo& info);
@@ -16,4 +16,4 @@ std::string wave_form_name(const DeviceInfo& info);
 /// Writes whole or not at all, with the program's name and version in front. Throws FileError.
 void write_json(const std::string& path, const nlohmann::json& json);
 
-}  // namespace mica::app
+}  // namespace mica::host::app

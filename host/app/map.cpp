@@ -10,12 +10,12 @@
 #include "host/app/evaluation.h"
 #include "host/app/map_options.h"
 #include "host/app/output.h"
-#include "host/base/error.h"
-#include "host/base/version.h"
 #include "host/image/image.h"
 #include "host/surface/export.h"
+#include "mica/error.h"
+#include "mica/version.h"
 
-namespace mica::app {
+namespace mica::host::app {
 namespace {
 
 int run(const SurfaceDescription& description, const std::string& recipe, const std::string& output) {
@@ -213,4 +213,4 @@ void add_map(CLI::App& app, Command* chosen) {
   }
 }
 
-}  // namespace mica::app
+}  // namespace mica::host::app

@@ -4,7 +4,7 @@
 
 #include <map>
 
-namespace mica::app {
+namespace mica::host::app {
 namespace {
 
 const std::map<std::string, Encoding> kEncodings = {{"unorm", Encoding::unorm},
@@ -83,4 +83,4 @@ void log_report(const SurfaceReport& report) {
   for (const std::string& warning : report.warnings) spdlog::warn(warning);
 }
 
-}  // namespace mica::app
+}  // namespace mica::host::app

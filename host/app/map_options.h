@@ -5,7 +5,7 @@
 
 #include "host/surface/surface.h"
 
-namespace mica::app {
+namespace mica::host::app {
 
 /// Options that say which normal map and how to read it.
 struct MapOptions {
@@ -21,4 +21,4 @@ Surface load_map(const MapOptions& options, SurfaceReport* report);
 /// Logs notes and warnings.
 void log_report(const SurfaceReport& report);
 
-}  // namespace mica::app
+}  // namespace mica::host::app

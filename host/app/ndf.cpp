@@ -13,13 +13,13 @@
 #include "host/app/map_options.h"
 #include "host/app/ndf_images.h"
 #include "host/app/output.h"
-#include "host/base/error.h"
-#include "host/base/version.h"
 #include "host/image/image.h"
 #include "host/methods/map/map_query.h"
 #include "host/tables/query_table.h"
+#include "mica/error.h"
+#include "mica/version.h"
 
-namespace mica::app {
+namespace mica::host::app {
 namespace {
 
 struct NdfOptions {
@@ -204,4 +204,4 @@ void add_ndf(CLI::App& app, Command* chosen) {
   command->callback([options, chosen] { *chosen = [options] { return run(*options); }; });
 }
 
-}  // namespace mica::app
+}  // namespace mica::host::app

@@ -12,7 +12,7 @@
 #include "host/methods/pyramid/pyramid_painter.h"
 #include "host/methods/triangles/triangle_evaluator.h"
 
-namespace mica::app {
+namespace mica::host::app {
 namespace {
 
 /// In chunks of some images, between which it checks for interrupts.
@@ -104,4 +104,4 @@ std::vector<float> draw_images(const OpenEvaluator& open, const Surface& surface
   return images;
 }
 
-}  // namespace mica::app
+}  // namespace mica::host::app

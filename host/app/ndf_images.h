@@ -6,7 +6,7 @@
 #include "host/app/evaluation.h"
 #include "host/methods/map/image_window.h"
 
-namespace mica::app {
+namespace mica::host::app {
 
 /// Images of `count` footprints' P-NDFs, one after the other, 0 off the disk: element by element where the
 /// evaluator can, and query by query where not.
@@ -14,4 +14,4 @@ namespace mica::app {
 std::vector<float> draw_images(const OpenEvaluator& open, const Surface& surface, std::size_t count,
                                const std::function<Query(std::size_t)>& footprint, const ImageWindow& window);
 
-}  // namespace mica::app
+}  // namespace mica::host::app

@@ -7,9 +7,9 @@
 #include <cstring>
 #include <filesystem>
 
-#include "host/base/error.h"
+#include "mica/error.h"
 
-namespace mica::app {
+namespace mica::host::app {
 
 void prepare_output(const std::string& path) {
   namespace fs = std::filesystem;
@@ -22,4 +22,4 @@ void prepare_output(const std::string& path) {
     throw FileError(fmt::format("{}: cannot write into its folder: {}", path, std::strerror(errno)));
 }
 
-}  // namespace mica::app
+}  // namespace mica::host::app

@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <utility>
 
-namespace mica::app {
+namespace mica::host::app {
 
 Progress::Progress(std::string unit, bool quiet)
     : unit_(std::move(unit)),
@@ -32,4 +32,4 @@ void Progress::update(long done, long all) {
   }
 }
 
-}  // namespace mica::app
+}  // namespace mica::host::app

@@ -3,7 +3,7 @@
 #include <chrono>
 #include <string>
 
-namespace mica::app {
+namespace mica::host::app {
 
 /// Progress on stderr: a bar with rate and time left on a terminal, a plain line every tenth elsewhere.
 class Progress {
@@ -19,4 +19,4 @@ class Progress {
   std::chrono::steady_clock::time_point start_;
 };
 
-}  // namespace mica::app
+}  // namespace mica::host::app

@@ -6,16 +6,17 @@
 #include <set>
 
 #include "host/app/commands.h"
+#include "host/app/exit_code.h"
 #include "host/app/frame_range.h"
 #include "host/app/interrupt.h"
 #include "host/app/output.h"
 #include "host/app/progress.h"
-#include "host/base/error.h"
 #include "host/job/job.h"
 #include "host/render/render.h"
 #include "host/report/report.h"
+#include "mica/error.h"
 
-namespace mica::app {
+namespace mica::host::app {
 namespace {
 
 struct RenderOptions {
@@ -60,7 +61,7 @@ class FrameLoop {
       if (!job_.frames.given) throw;
       spdlog::error("frame {}: {}", frame, error.what());
       reports_.push_back(failure_json(frame, error.what()));
-      failed_ = error.code();
+      failed_ = exit_code_of(error.kind());
     }
   }
 
@@ -142,4 +143,4 @@ void add_render(CLI::App& app, Command* chosen) {
   command->callback([=] { *chosen = [=] { return run(*options); }; });
 }
 
-}  // namespace mica::app
+}  // namespace mica::host::app

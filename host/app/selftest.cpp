@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "host/app/commands.h"
+#include "host/app/exit_code.h"
 #include "host/app/interrupt.h"
 #include "host/app/json_file.h"
 #include "host/app/output.h"
@@ -18,7 +19,7 @@
 #include "host/verify/pyramid_checks.h"
 #include "host/verify/selftest_tables.h"
 
-namespace mica::app {
+namespace mica::host::app {
 namespace {
 
 constexpr int kResolution = 256;
@@ -194,4 +195,4 @@ void add_selftest(CLI::App& app, Command* chosen) {
   command->callback([=] { *chosen = [=] { return run(*device_index, *evaluations, *json_path); }; });
 }
 
-}  // namespace mica::app
+}  // namespace mica::host::app

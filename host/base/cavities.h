@@ -1,6 +1,6 @@
 #pragma once
 
-namespace mica {
+namespace mica::host {
 
 /// Where the light goes that bounces more than once inside V-shaped cavities: f_2+. [Che19] secs. 3.5 and 5.2
 enum class Compensation {
@@ -14,4 +14,4 @@ enum class LostEnergy {
   table   ///< Gaussians with the moments of the footprint's slopes. [Che19] Eq. 18
 };
 
-}  // namespace mica
+}  // namespace mica::host

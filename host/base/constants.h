@@ -1,7 +1,7 @@
 #pragma once
 
-namespace mica {
+namespace mica::host {
 
 constexpr double kPi = 3.14159265358979323846;
 
-}  // namespace mica
+}  // namespace mica::host

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-namespace mica {
+namespace mica::host {
 
 /// Smooth distribution of normals that glints add up to.
 enum class Distribution { beckmann, trowbridge_reitz };
@@ -22,4 +22,4 @@ struct GlintPoint {
   std::uint32_t seed = 1;
 };
 
-}  // namespace mica
+}  // namespace mica::host

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace mica {
+namespace mica::host {
 
 /// Where a patch BRDF's masking and projected areas come from.
 enum class Masking {
@@ -9,4 +9,4 @@ enum class Masking {
   geometric  ///< one roughness for the whole map, and cosines to the geometric normal. [Yan14] Eq. 1
 };
 
-}  // namespace mica
+}  // namespace mica::host

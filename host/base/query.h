@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 
-namespace mica {
+namespace mica::host {
 
 /// A Gaussian pixel footprint in texture space: mean in uv (one map period is [0,1)^2, repeat outside) and
 /// covariance in uv^2 units, symmetric positive definite. [Yan14] sec. 3.
@@ -41,4 +41,4 @@ struct SampleQuery {
   std::uint64_t key = 0;  ///< all random numbers of this draw are a hash of it
 };
 
-}  // namespace mica
+}  // namespace mica::host

@@ -9,7 +9,7 @@
 #include <fstream>
 #include <iterator>
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 std::filesystem::path cache_folder() {
@@ -64,4 +64,4 @@ void BinaryCache::store(const cl::Program& program) const {
   std::filesystem::remove(temporary, ignored);
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -4,7 +4,7 @@
 
 #include "host/device/device.h"
 
-namespace mica {
+namespace mica::host {
 
 /// Program binaries on disk, one file for each (source, options, device, driver), in $XDG_CACHE_HOME/mica or
 /// ~/.cache/mica. A cache that cannot be read or written is no error: the program is built from source.
@@ -22,4 +22,4 @@ class BinaryCache {
   std::string path_;  // empty: no folder to cache in
 };
 
-}  // namespace mica
+}  // namespace mica::host

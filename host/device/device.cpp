@@ -6,7 +6,7 @@
 #include "host/device/binary_cache.h"
 #include "host/device/kernel_sources.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 std::vector<cl::Device> all_devices() {
@@ -161,4 +161,4 @@ cl::Buffer Device::upload_bytes(const void* data, std::size_t bytes, const std::
   return result;
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -10,7 +10,7 @@
 
 #include "host/device/opencl.h"
 
-namespace mica {
+namespace mica::host {
 
 /// What a device reports of itself.
 struct DeviceInfo {
@@ -87,4 +87,4 @@ class Device {
   std::map<std::string, cl::Program> programs_;
 };
 
-}  // namespace mica
+}  // namespace mica::host

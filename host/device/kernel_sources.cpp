@@ -5,9 +5,9 @@
 #include <set>
 #include <sstream>
 
-#include "host/base/error.h"
+#include "mica/error.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 bool has_include_guard(const std::string& text) {
@@ -43,4 +43,4 @@ std::string expand_kernel_source(const std::string& name) {
   return source;
 }
 
-}  // namespace mica
+}  // namespace mica::host

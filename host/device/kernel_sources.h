@@ -3,7 +3,7 @@
 #include <map>
 #include <string>
 
-namespace mica {
+namespace mica::host {
 
 /// Text of the files of kernels/, by file name; embedded at build time.
 const std::map<std::string, std::string>& kernel_sources();
@@ -13,4 +13,4 @@ const std::map<std::string, std::string>& kernel_sources();
 /// not exist.
 std::string expand_kernel_source(const std::string& name);
 
-}  // namespace mica
+}  // namespace mica::host

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 struct ErrorName {
@@ -47,4 +47,4 @@ DeviceError opencl_error(const cl::Error& error, const std::string& doing) {
   return DeviceError(fmt::format("{}: {}: {}", doing, error.what(), describe_opencl_error(error.err())));
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -6,9 +6,9 @@
 #include <CL/opencl.hpp>
 #include <string>
 
-#include "host/base/error.h"
+#include "mica/error.h"
 
-namespace mica {
+namespace mica::host {
 
 /// "CL_OUT_OF_RESOURCES (the device ran out of resources)"
 std::string describe_opencl_error(cl_int code);
@@ -17,4 +17,4 @@ std::string describe_opencl_error(cl_int code);
 /// triangles".
 DeviceError opencl_error(const cl::Error& error, const std::string& doing);
 
-}  // namespace mica
+}  // namespace mica::host

@@ -8,10 +8,10 @@
 #include <cstring>
 #include <filesystem>
 
-#include "host/base/error.h"
 #include "host/image/image.h"
+#include "mica/error.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 [[noreturn]] void fail(const std::string& path, const char* action, int error) {
@@ -83,4 +83,4 @@ void write_file_atomically(const std::string& path, const std::string& bytes) {
   sync_folder(path);
 }
 
-}  // namespace mica
+}  // namespace mica::host

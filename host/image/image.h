@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace mica {
+namespace mica::host {
 
 /// Named float channels of equal size, rows from the top, and string metadata.
 struct Image {
@@ -54,4 +54,4 @@ void write_file_atomically(const std::string& path, const std::string& bytes);
 /// it cannot be read, is damaged, claims more pixels than its bytes can hold, or has NaN or infinite pixels.
 Image read_rgb(const std::string& path);
 
-}  // namespace mica
+}  // namespace mica::host

@@ -7,10 +7,10 @@
 #include <filesystem>
 #include <system_error>
 
-#include "host/base/error.h"
 #include "host/image/image.h"
+#include "mica/error.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 std::uintmax_t file_size(const std::string& path) {
@@ -99,4 +99,4 @@ Image read_rgb(const std::string& path) {
   return image;
 }
 
-}  // namespace mica
+}  // namespace mica::host

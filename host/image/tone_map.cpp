@@ -3,7 +3,7 @@
 
 #include "host/image/image.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 /// Identity up to the knee, then an exponential approach to 1 with the same slope at the knee.
@@ -35,4 +35,4 @@ double tone_mapped(ToneMap tone_map, double radiance) {
   return 0;
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <cstdint>
 
-#include "host/base/error.h"
 #include "host/image/image.h"
+#include "mica/error.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 void check(const std::string& path, const Image& image) {
@@ -113,4 +113,4 @@ double displayed_value(float radiance) {
   return radiance > 0 ? tone_mapped(ToneMap::shoulder, radiance) : 0;
 }
 
-}  // namespace mica
+}  // namespace mica::host

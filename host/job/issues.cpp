@@ -6,7 +6,7 @@
 #include <tuple>
 #include <utility>
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 std::string listing(const std::vector<JobIssue>& issues) {
@@ -100,4 +100,4 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string_vi
                                                   : "";
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -7,7 +7,7 @@
 
 #include "host/job/job.h"
 
-namespace mica {
+namespace mica::host {
 
 /// Collects what is wrong with one job until all of it can be reported at once.
 class Issues {
@@ -42,4 +42,4 @@ std::string joined(const std::vector<std::string_view>& words);
 /// ` (did you mean "width"?)` when a candidate is close to `word`, otherwise nothing.
 std::string did_you_mean(std::string_view word, const std::vector<std::string_view>& candidates);
 
-}  // namespace mica
+}  // namespace mica::host

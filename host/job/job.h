@@ -4,12 +4,12 @@
 #include <string>
 #include <vector>
 
-#include "host/base/error.h"
 #include "host/image/image.h"
 #include "host/scene/description.h"
 #include "host/surface/description.h"
+#include "mica/error.h"
 
-namespace mica {
+namespace mica::host {
 
 struct ImageSettings {
   int width = 1280, height = 720;
@@ -81,4 +81,4 @@ class JobError : public UsageError {
 ///   and that is not there is an issue of the job, reported where it is named.
 Job load_job(const std::string& path, const std::vector<std::string>& overrides);
 
-}  // namespace mica
+}  // namespace mica::host

@@ -10,7 +10,7 @@
 #include "host/job/read_job.h"
 #include "host/job/toml_document.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 constexpr std::size_t largest_job = 1 << 20;  // bytes
@@ -119,4 +119,4 @@ Job read_job(const std::string& text, const std::string& path, const std::vector
   return job;
 }
 
-}  // namespace mica
+}  // namespace mica::host

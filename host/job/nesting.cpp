@@ -2,7 +2,7 @@
 
 #include "host/job/toml_document.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 /// Counted as toml++ does: from 1, columns in code points.
@@ -71,4 +71,4 @@ std::optional<toml::source_position> find_excessive_nesting(std::string_view tex
   return std::nullopt;
 }
 
-}  // namespace mica
+}  // namespace mica::host

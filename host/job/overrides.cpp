@@ -6,7 +6,7 @@
 
 #include "host/job/toml_document.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 /// `key=value`, both without the blanks around them.
@@ -102,4 +102,4 @@ void apply_override(toml::table& root, std::string_view text, Issues& issues) {
   }
 }
 
-}  // namespace mica
+}  // namespace mica::host

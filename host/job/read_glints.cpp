@@ -1,6 +1,6 @@
 #include "host/job/read_job.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 constexpr std::size_t kMostColors = 8;
@@ -49,4 +49,4 @@ void read_glints(TableReader& material, MaterialDescription& description) {
   }
 }
 
-}  // namespace mica
+}  // namespace mica::host

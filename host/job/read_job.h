@@ -6,7 +6,7 @@
 #include "host/job/job.h"
 #include "host/job/toml_reader.h"
 
-namespace mica {
+namespace mica::host {
 
 constexpr Interval kCoordinate = closed(-1e6, 1e6), kExtent = open_low(0, 1e6);
 
@@ -32,4 +32,4 @@ void read_lights(TableReader& job, SceneDescription& scene);
 /// `[camera]`, `[[shape]]`, `[[light]]`, `[background]` and the materials.
 SceneDescription read_scene(TableReader& job, const std::vector<SurfaceDescription>& surfaces);
 
-}  // namespace mica
+}  // namespace mica::host

@@ -5,7 +5,7 @@
 #include "host/job/toml_reader.h"
 #include "host/scene/description.h"
 
-namespace mica {
+namespace mica::host {
 
 /// The array `keys` of a camera or a light: each key has a `frame`, and says what is different there from the
 /// table itself.
@@ -26,4 +26,4 @@ Keyframes<Described> read_keyframes(TableReader& table, const Described& still, 
   return keys;
 }
 
-}  // namespace mica
+}  // namespace mica::host

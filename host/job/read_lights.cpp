@@ -3,7 +3,7 @@
 #include "host/job/read_job.h"
 #include "host/job/read_keyframes.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 const Interval power = closed(0, 1e9);
@@ -97,4 +97,4 @@ void read_lights(TableReader& job, SceneDescription& scene) {
   job.read_table_array("light", [&](TableReader& light) { read_light(light, scene); });
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -4,7 +4,7 @@
 
 #include "host/job/read_job.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 const Interval reflectance = closed(0, 1);
@@ -129,4 +129,4 @@ std::vector<MaterialDescription> read_materials(TableReader& job,
   return materials;
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -3,7 +3,7 @@
 #include "host/job/read_job.h"
 #include "host/job/read_keyframes.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 // Far inside what single precision, in which rays are traced, tells apart from infinity.
@@ -123,4 +123,4 @@ SceneDescription read_scene(TableReader& job, const std::vector<SurfaceDescripti
   return scene;
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -5,7 +5,7 @@
 
 #include "host/job/read_job.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 // What synthesis takes; a map of 16384^2 normals is 4 GiB.
@@ -237,4 +237,4 @@ std::vector<SurfaceDescription> read_surfaces(TableReader& job) {
   return surfaces;
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -4,7 +4,7 @@
 
 #include <memory>
 
-namespace mica {
+namespace mica::host {
 
 toml::table parse_toml(std::string_view text, const std::string& source_path) {
   constexpr int deepest = 16;
@@ -25,4 +25,4 @@ std::string describe(const toml::node& node) {
   return node.is_table() ? "a table" : "a date or time";
 }
 
-}  // namespace mica
+}  // namespace mica::host

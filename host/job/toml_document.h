@@ -7,7 +7,7 @@
 
 #include "host/job/issues.h"
 
-namespace mica {
+namespace mica::host {
 
 /// Parses TOML whose nodes remember `source_path`. Throws toml::parse_error, also for text that nests so
 /// deeply that toml++ would run out of stack.
@@ -26,4 +26,4 @@ std::optional<toml::source_position> find_excessive_nesting(std::string_view tex
 /// Position behind the TOML string that starts at `begin`, or behind the line or text that fails to close it.
 std::size_t skip_string(std::string_view text, std::size_t begin);
 
-}  // namespace mica
+}  // namespace mica::host

@@ -7,7 +7,7 @@
 
 #include "host/job/toml_document.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 std::string to_string(const Interval& range) {
@@ -289,4 +289,4 @@ void TableReader::read_table_array(std::string_view key, const Visitor& visit) {
   }
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -12,7 +12,7 @@
 
 #include "host/job/issues.h"
 
-namespace mica {
+namespace mica::host {
 
 /// The numbers that a key takes; an end may be excluded. NaN and infinities are in none.
 struct Interval {
@@ -135,4 +135,4 @@ void TableReader::read(std::string_view key, T& value, const Choices<T>& choices
   if (index < choices.size()) value = choices[index].second;
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace mica::bench {
+namespace mica::host::bench {
 
 double measure_bandwidth(Device& device) {
   constexpr std::size_t kWaves = 1 << 20, kLanes = 16, kRuns = 6;  // 64 MiB an array
@@ -34,4 +34,4 @@ double measure_bandwidth(Device& device) {
   return best;
 }
 
-}  // namespace mica::bench
+}  // namespace mica::host::bench

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace mica::bench {
+namespace mica::host::bench {
 namespace {}  // namespace
 
 std::vector<Query> coherent_queries(const Surface& surface, double sigma_texels, double roughness) {
@@ -40,4 +40,4 @@ double relative_l2(const std::vector<float>& densities,
   return std::sqrt(squares / reference_squares);
 }
 
-}  // namespace mica::bench
+}  // namespace mica::host::bench

@@ -7,7 +7,7 @@
 #include "host/reference/oracle.h"
 #include "host/surface/surface.h"
 
-namespace mica::bench {
+namespace mica::host::bench {
 
 constexpr int kBlockSide = 256;  ///< queries a side of the block of neighbouring footprints
 
@@ -27,4 +27,4 @@ Timing timing_of(std::vector<double> seconds);
 double relative_l2(const std::vector<float>& densities,
                    const std::vector<reference::OracleResult>& references);
 
-}  // namespace mica::bench
+}  // namespace mica::host::bench

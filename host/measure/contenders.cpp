@@ -4,12 +4,12 @@
 
 #include <algorithm>
 
-#include "host/base/error.h"
 #include "host/methods/gaussians/mixture_evaluator.h"
 #include "host/methods/make_evaluator.h"
 #include "host/methods/triangles/triangle_evaluator.h"
+#include "mica/error.h"
 
-namespace mica::bench {
+namespace mica::host::bench {
 namespace {
 
 constexpr double kFlopsAnElement = 105;  // of slice_elements in gaussians.cl and its share of the leaf
@@ -70,4 +70,4 @@ std::vector<Prepared> prepare(const std::vector<Contender>& contenders, Device& 
   return all;
 }
 
-}  // namespace mica::bench
+}  // namespace mica::host::bench

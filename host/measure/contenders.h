@@ -8,7 +8,7 @@
 #include "host/methods/evaluator.h"
 #include "host/surface/surface.h"
 
-namespace mica::bench {
+namespace mica::host::bench {
 
 /// An evaluator of the registry with its knobs set.
 struct Contender {
@@ -36,4 +36,4 @@ struct Prepared {
 std::vector<Prepared> prepare(const std::vector<Contender>& contenders, Device& device,
                               const Surface& surface);
 
-}  // namespace mica::bench
+}  // namespace mica::host::bench

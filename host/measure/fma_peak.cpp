@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace mica::bench {
+namespace mica::host::bench {
 
 double measure_fma_peak(Device& device) {
   constexpr int kRounds = 20000, kChains = 12, kLanes = 16, kRuns = 8;
@@ -30,4 +30,4 @@ double measure_fma_peak(Device& device) {
   return best;
 }
 
-}  // namespace mica::bench
+}  // namespace mica::host::bench

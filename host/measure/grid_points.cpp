@@ -8,7 +8,7 @@
 #include "host/methods/grid/grid_evaluator.h"
 #include "host/reference/glint_grid.h"
 
-namespace mica::bench {
+namespace mica::host::bench {
 namespace {
 
 constexpr double kDensity = 1e6, kMicroroughness = 0.02;
@@ -46,4 +46,4 @@ std::vector<GridPoint> measure_grid(Device& device, const Effort& effort, const 
   return points;
 }
 
-}  // namespace mica::bench
+}  // namespace mica::host::bench

@@ -4,7 +4,7 @@
 #include <cmath>
 #include "host/base/constants.h"
 
-namespace mica::bench {
+namespace mica::host::bench {
 namespace {
 
 constexpr double kDegree = kPi / 180;
@@ -101,4 +101,4 @@ DisplayDifference display_difference(const Image& image, const Image& reference)
   return result;
 }
 
-}  // namespace mica::bench
+}  // namespace mica::host::bench

@@ -5,7 +5,7 @@
 
 #include "host/image/image.h"
 
-namespace mica::bench {
+namespace mica::host::bench {
 
 /// Mean over pixels and R, G, B of (x - ref)^2 / (ref^2 + 0.01). Images of one size, with channels R, G, B.
 double relative_mse(const Image& image, const Image& reference);
@@ -24,4 +24,4 @@ struct DisplayDifference {
 };
 DisplayDifference display_difference(const Image& image, const Image& reference);
 
-}  // namespace mica::bench
+}  // namespace mica::host::bench

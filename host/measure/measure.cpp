@@ -7,7 +7,7 @@
 #include "host/base/stopwatch.h"
 #include "host/measure/coherent.h"
 
-namespace mica::bench {
+namespace mica::host::bench {
 namespace {
 
 constexpr std::size_t kLeastQueries = 16;
@@ -111,4 +111,4 @@ Measurement measure(const Prepared& prepared, const Surface& surface, const Mach
   return m;
 }
 
-}  // namespace mica::bench
+}  // namespace mica::host::bench

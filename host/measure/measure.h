@@ -7,7 +7,7 @@
 #include "host/measure/contenders.h"
 #include "host/measure/results.h"
 
-namespace mica::bench {
+namespace mica::host::bench {
 
 /// How much time a measurement may take.
 struct Effort {
@@ -38,4 +38,4 @@ Measurement measure(const Prepared& prepared, const Surface& surface, const Mach
 /// Throws to stop; called between measurements with what comes next.
 using Progress = std::function<void(const std::string& what)>;
 
-}  // namespace mica::bench
+}  // namespace mica::host::bench

@@ -12,7 +12,7 @@
 #include "host/render/film.h"
 #include "host/scene/scene.h"
 
-namespace mica::bench {
+namespace mica::host::bench {
 namespace {
 
 constexpr int kResolution = 512, kSubpixels = 2, kRepeats = 3;
@@ -154,4 +154,4 @@ void render_pictures(int width, const std::vector<int>& elements, Device& device
   }
 }
 
-}  // namespace mica::bench
+}  // namespace mica::host::bench

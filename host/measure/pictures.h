@@ -5,7 +5,7 @@
 #include "host/measure/measure.h"
 #include "host/measure/results.h"
 
-namespace mica::bench {
+namespace mica::host::bench {
 
 /// Renders a crop of a snail shell with every contender and with brute force, and the reference picture with
 /// the oracle. Fills in the pictures of `results`.
@@ -13,4 +13,4 @@ namespace mica::bench {
 void render_pictures(int width, const std::vector<int>& elements, Device& device, const Progress& progress,
                      Results* results);
 
-}  // namespace mica::bench
+}  // namespace mica::host::bench

@@ -9,7 +9,7 @@
 #include "host/surface/interpolate.h"
 #include "host/surface/random.h"
 
-namespace mica::bench {
+namespace mica::host::bench {
 namespace {
 
 double point_sample_mean(const Surface& surface, const Query& query, std::int64_t samples, std::uint64_t seed,
@@ -42,4 +42,4 @@ std::vector<float> point_samples(const Surface& surface, const std::vector<Query
   return densities;
 }
 
-}  // namespace mica::bench
+}  // namespace mica::host::bench

@@ -8,7 +8,7 @@
 #include "host/device/device.h"
 #include "host/image/image.h"
 
-namespace mica::bench {
+namespace mica::host::bench {
 
 /// How far densities lie from the oracle's. Errors of single queries are |D - ref| / (ref + peak / 100),
 /// where peak is the largest reference.
@@ -98,4 +98,4 @@ struct Results {
   std::vector<PictureRow> pictures;
 };
 
-}  // namespace mica::bench
+}  // namespace mica::host::bench

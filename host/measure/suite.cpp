@@ -6,7 +6,6 @@
 #include <ctime>
 #include <functional>
 
-#include "host/base/error.h"
 #include "host/base/stopwatch.h"
 #include "host/measure/bandwidth.h"
 #include "host/measure/coherent.h"
@@ -15,8 +14,9 @@
 #include "host/measure/pictures.h"
 #include "host/measure/thumbnails.h"
 #include "host/reference/oracle.h"
+#include "mica/error.h"
 
-namespace mica::bench {
+namespace mica::host::bench {
 namespace {
 
 constexpr double kOracleTolerance = 1e-7;  // a thousandth of what the best evaluator promises
@@ -168,4 +168,4 @@ Results run_suite(const std::string& name, Device& device, const Progress& progr
   return results;
 }
 
-}  // namespace mica::bench
+}  // namespace mica::host::bench

@@ -6,7 +6,7 @@
 #include "host/measure/measure.h"
 #include "host/measure/results.h"
 
-namespace mica::bench {
+namespace mica::host::bench {
 
 /// Names of the suites: "tiny" takes seconds and shows that all of it works; "quick" takes less than a
 /// minute, "standard" less than ten, on two idle cores.
@@ -16,4 +16,4 @@ const std::vector<std::string>& suite_names();
 /// `progress` throws.
 Results run_suite(const std::string& name, Device& device, const Progress& progress);
 
-}  // namespace mica::bench
+}  // namespace mica::host::bench

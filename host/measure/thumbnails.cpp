@@ -7,7 +7,7 @@
 #include "host/reference/oracle.h"
 #include "host/verify/accuracy.h"
 
-namespace mica::bench {
+namespace mica::host::bench {
 namespace {
 
 constexpr double kSigmaTexels = 8, kRoughness = 0.01;
@@ -64,4 +64,4 @@ ThumbnailRow thumbnails(const std::string& name, const Surface& surface,
   return row;
 }
 
-}  // namespace mica::bench
+}  // namespace mica::host::bench

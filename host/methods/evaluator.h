@@ -7,7 +7,7 @@
 
 #include "host/base/query.h"
 
-namespace mica {
+namespace mica::host {
 
 /// Densities that a device is computing.
 class PendingDensities {
@@ -34,4 +34,4 @@ class Evaluator {
   virtual double device_seconds() const = 0;     ///< that its kernels ran so far, by the device's own clock
 };
 
-}  // namespace mica
+}  // namespace mica::host

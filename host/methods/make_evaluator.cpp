@@ -3,14 +3,14 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "host/base/error.h"
 #include "host/methods/beckmanns/beckmann_evaluator.h"
 #include "host/methods/gaussians/mixture_evaluator.h"
 #include "host/methods/pyramid/pyramid_evaluator.h"
 #include "host/methods/smooth/smooth_evaluator.h"
 #include "host/methods/triangles/triangle_evaluator.h"
+#include "mica/error.h"
 
-namespace mica {
+namespace mica::host {
 
 const std::vector<std::string>& evaluator_names() {
   static const std::vector<std::string> names = {"triangles", "gaussians", "beckmanns", "smooth", "pyramid"};
@@ -30,4 +30,4 @@ std::unique_ptr<Evaluator> make_evaluator(const std::string& name, Device& devic
       fmt::format("there is no evaluator \"{}\"; available: {}", name, fmt::join(evaluator_names(), ", ")));
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -8,7 +8,7 @@
 #include "host/methods/evaluator.h"
 #include "host/surface/surface.h"
 
-namespace mica {
+namespace mica::host {
 
 /// Names that `make_evaluator` takes.
 const std::vector<std::string>& evaluator_names();
@@ -20,4 +20,4 @@ const std::vector<std::string>& evaluator_names();
 std::unique_ptr<Evaluator> make_evaluator(const std::string& name, Device& device, const Surface& surface,
                                           int elements = 1);
 
-}  // namespace mica
+}  // namespace mica::host

@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "host/base/error.h"
 #include "host/methods/baseline/normal_map_brdf.h"
 #include "host/methods/beckmanns/beckmann_brdf.h"
 #include "host/methods/cavities/cavity_brdf.h"
 #include "host/methods/map/map_query.h"
+#include "mica/error.h"
 
-namespace mica {
+namespace mica::host {
 
 const std::vector<std::string>& masking_names() {
   static const std::vector<std::string> names = {"exact", "filtered", "geometric"};
@@ -40,4 +40,4 @@ std::string view_problem(const ViewQuery& query, int map_width, int map_height) 
   return query_problem({query.footprint, Eigen::Vector2d::Zero(), query.roughness}, map_width, map_height);
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -11,7 +11,7 @@
 #include "host/methods/patch_brdf.h"
 #include "host/surface/surface.h"
 
-namespace mica {
+namespace mica::host {
 
 /// "exact", "filtered" and "geometric", in the order of Masking.
 const std::vector<std::string>& masking_names();
@@ -37,4 +37,4 @@ std::unique_ptr<PatchBrdf> make_patch_brdf(const std::string& name, Device& devi
 /// can; directions have to be unit. A direction at or below the horizon is no problem: nothing is seen there.
 std::string view_problem(const ViewQuery& query, int map_width, int map_height);
 
-}  // namespace mica
+}  // namespace mica::host

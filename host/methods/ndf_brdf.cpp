@@ -15,7 +15,7 @@
 #include "host/surface/interpolate.h"
 #include "host/surface/random.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 enum Stream : std::uint64_t { kChoice, kDirectionX, kDirectionY, kPositionX, kPositionY };
@@ -148,4 +148,4 @@ std::vector<Albedo> NdfBrdf::energy(const std::vector<ViewQuery>& queries) {
   return albedos;
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -7,7 +7,7 @@
 #include "host/methods/patch_brdf.h"
 #include "host/surface/surface.h"
 
-namespace mica {
+namespace mica::host {
 
 /// A P-NDF as a BRDF: f_r max(i.n, 0) = D(h) G(o, i) / (4 o.n), [Yan14] Eq. 1, with the Smith masking of the
 /// map as a whole. It is not normalised for the patch: what masking takes is lost, what shadowed normals of
@@ -50,4 +50,4 @@ class NdfBrdf : public PatchBrdf {
   double normal_share_, lobe_share_, cosine_share_;
 };
 
-}  // namespace mica
+}  // namespace mica::host

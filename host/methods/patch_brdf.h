@@ -7,7 +7,7 @@
 
 #include "host/base/query.h"
 
-namespace mica {
+namespace mica::host {
 
 /// What a patch BRDF answers to a BrdfQuery. Light that bounced once takes Fresnel's factor at the half
 /// vector; light that bounced more often takes one of its own, so the parts are kept apart.
@@ -47,4 +47,4 @@ class PatchBrdf {
   virtual double device_seconds() const = 0;     ///< that its kernels ran so far, by the device's own clock
 };
 
-}  // namespace mica
+}  // namespace mica::host

@@ -5,7 +5,7 @@
 
 #include "host/microfacet/masking.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 /// Lambda(omega) of a distribution that is stretched by alpha. [Heitz14] Eq. 80
@@ -31,4 +31,4 @@ double glint_masking(const GlintsDescription& glints, const Eigen::Vector2d& alp
               smith_lambda(glints.distribution, alpha, to_light));
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -4,7 +4,7 @@
 
 #include "host/scene/glints_description.h"
 
-namespace mica {
+namespace mica::host {
 
 /// Masking and shadowing G(o, i) of a glint with the normal h, half way between them: Smith's,
 /// height-correlated, for the smooth distribution [Heitz14 Eqs. 72, 86, 99], or that of V-cavities [Che19 Eq.
@@ -13,4 +13,4 @@ namespace mica {
 double glint_masking(const GlintsDescription& glints, const Eigen::Vector2d& alpha,
                      const Eigen::Vector3d& to_eye, const Eigen::Vector3d& to_light);
 
-}  // namespace mica
+}  // namespace mica::host

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 
-namespace mica {
+namespace mica::host {
 
 /// Point `index` of Sobol's (0, 2)-sequence, in [0, 1)^2: each 2^k points from a multiple of 2^k on fall one
 /// into each box of area 2^-k.
@@ -20,4 +20,4 @@ inline Eigen::Vector2d low_discrepancy_point(std::uint32_t index, std::uint64_t 
   return {x * 0x1p-32, y * 0x1p-32};
 }
 
-}  // namespace mica
+}  // namespace mica::host

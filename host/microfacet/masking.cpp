@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace mica {
+namespace mica::host {
 
 double beckmann_lambda(double cos_theta, double alpha) {
   const double alpha_tan = alpha * std::sqrt(std::fmax(0, 1 - cos_theta * cos_theta)) / cos_theta;
@@ -17,4 +17,4 @@ double smith_masking_shadowing(double cos_o, double cos_i, double alpha) {
   return 1 / (1 + beckmann_lambda(cos_o, alpha) + beckmann_lambda(cos_i, alpha));
 }
 
-}  // namespace mica
+}  // namespace mica::host

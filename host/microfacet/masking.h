@@ -1,6 +1,6 @@
 #pragma once
 
-namespace mica {
+namespace mica::host {
 
 // Smith's masking and shadowing for Beckmann-distributed slopes, after [Heitz14]: Eric Heitz, "Understanding
 // the Masking-Shadowing Function in Microfacet-Based BRDFs", Journal of Computer Graphics Techniques 3(2),
@@ -12,4 +12,4 @@ double beckmann_lambda(double cos_theta, double alpha);
 /// Height-correlated masking and shadowing G2(o, i), [Heitz14] Eq. 99. @return [0, 1].
 double smith_masking_shadowing(double cos_o, double cos_i, double alpha);
 
-}  // namespace mica
+}  // namespace mica::host

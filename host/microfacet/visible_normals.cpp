@@ -6,7 +6,7 @@
 
 #include "host/base/constants.h"
 
-namespace mica {
+namespace mica::host {
 namespace {}  // namespace
 
 VisibleNormals::VisibleNormals(const Eigen::Matrix2d& slope_moments) {
@@ -39,4 +39,4 @@ double VisibleNormals::pdf(const Eigen::Vector3d& view, const Eigen::Vector3d& h
   return G1 * D / 4;
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-namespace mica {
+namespace mica::host {
 
 /// A Trowbridge-Reitz lobe of normals about +z, from which reflected directions are drawn by how much of each
 /// normal the view sees. Its tails are longer than those of any Gaussian of slopes of the same moments, so
@@ -27,4 +27,4 @@ class VisibleNormals {
   Eigen::Vector2d alphas_;  // roughness along them
 };
 
-}  // namespace mica
+}  // namespace mica::host

@@ -8,7 +8,7 @@
 #include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
 
-namespace mica::reference {
+namespace mica::host::reference {
 namespace {
 
 constexpr double kReach = 8;     // standard deviations
@@ -181,4 +181,4 @@ double BeckmannMixture::visible_area(const std::vector<SlopeLobe>& lobes, const 
   return sum;
 }
 
-}  // namespace mica::reference
+}  // namespace mica::host::reference

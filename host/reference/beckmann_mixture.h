@@ -6,7 +6,7 @@
 #include "host/base/query.h"
 #include "host/surface/surface.h"
 
-namespace mica::reference {
+namespace mica::host::reference {
 
 /// A Gaussian of slopes and its share of a footprint.
 struct SlopeLobe {
@@ -43,4 +43,4 @@ class BeckmannMixture {
   std::vector<SlopeLobe> fitted_;
 };
 
-}  // namespace mica::reference
+}  // namespace mica::host::reference

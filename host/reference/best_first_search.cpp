@@ -5,7 +5,7 @@
 
 #include "host/reference/gaussian_triangle.h"
 
-namespace mica::reference {
+namespace mica::host::reference {
 
 BestFirstSearch::BestFirstSearch(const CellGrid& grid, const NormalPyramid& pyramid,
                                  const TriangleRules& rules, const QueryFrame& frame,
@@ -99,4 +99,4 @@ double BestFirstSearch::lower_bound(const NormalBox& box, const CellRange& cells
   return low.cwiseMax(-high).cwiseMax(0.0).squaredNorm() + nearest_squared(corners, 4);
 }
 
-}  // namespace mica::reference
+}  // namespace mica::host::reference

@@ -8,7 +8,7 @@
 #include "host/reference/query_frame.h"
 #include "host/reference/running_integral.h"
 
-namespace mica::reference {
+namespace mica::host::reference {
 
 /// Integrates one query over the plane. Nodes of the pyramid, repeated with the map's period, wait in a
 /// queue; the one that may matter most is opened, or integrated if it is a block, until those that wait
@@ -49,4 +49,4 @@ class BestFirstSearch {
   std::vector<Node> queue_;
 };
 
-}  // namespace mica::reference
+}  // namespace mica::host::reference

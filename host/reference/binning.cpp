@@ -8,12 +8,12 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 
-#include "host/base/error.h"
 #include "host/reference/query_frame.h"
 #include "host/surface/interpolate.h"
 #include "host/surface/random.h"
+#include "mica/error.h"
 
-namespace mica::reference {
+namespace mica::host::reference {
 namespace {
 
 /// Two independent standard normal numbers, [Box and Muller 1958].
@@ -103,4 +103,4 @@ BinnedNdf bin_normals(const Surface& surface, const Query& query, const BinningS
   return result;
 }
 
-}  // namespace mica::reference
+}  // namespace mica::host::reference

@@ -7,7 +7,7 @@
 #include "host/base/query.h"
 #include "host/surface/surface.h"
 
-namespace mica::reference {
+namespace mica::host::reference {
 
 struct BinningSettings {
   std::uint64_t samples = 100'000'000;
@@ -38,4 +38,4 @@ struct BinnedNdf {
 /// window that is not positive.
 BinnedNdf bin_normals(const Surface& surface, const Query& query, const BinningSettings& settings);
 
-}  // namespace mica::reference
+}  // namespace mica::host::reference

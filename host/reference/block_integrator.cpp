@@ -5,7 +5,7 @@
 
 #include "host/reference/gaussian_triangle.h"
 
-namespace mica::reference {
+namespace mica::host::reference {
 
 void BlockIntegrator::integrate(int block_i, int block_j, long period_x, long period_y) {
   collect_cells(block_i, block_j, period_x, period_y);
@@ -83,4 +83,4 @@ void BlockIntegrator::promise_something() {
   }
 }
 
-}  // namespace mica::reference
+}  // namespace mica::host::reference

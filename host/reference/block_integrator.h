@@ -5,7 +5,7 @@
 #include "host/reference/running_integral.h"
 #include "host/reference/triangle_batch.h"
 
-namespace mica::reference {
+namespace mica::host::reference {
 
 /// Adds the integral over blocks of cells to that of one query. Keeps references to its arguments.
 class BlockIntegrator {
@@ -31,4 +31,4 @@ class BlockIntegrator {
   TriangleBatch triangles_;
 };
 
-}  // namespace mica::reference
+}  // namespace mica::host::reference

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace mica::reference {
+namespace mica::host::reference {
 namespace {
 
 double clamped_dot(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
@@ -139,4 +139,4 @@ double CavityMixture::energy(const ViewQuery& query) const {
   return sum;
 }
 
-}  // namespace mica::reference
+}  // namespace mica::host::reference

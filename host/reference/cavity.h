@@ -6,7 +6,7 @@
 #include "host/base/query.h"
 #include "host/surface/surface.h"
 
-namespace mica::reference {
+namespace mica::host::reference {
 
 /// A V-shaped cavity of two mirrors in a plane with normal g = z: the facet with normal `facet`, and the
 /// symmetric one. [Che19] sec. 3. Directions are unit vectors that point away from the surface.
@@ -68,4 +68,4 @@ double mirrored(const Eigen::Vector3d& o, const Eigen::Vector3d& i, double facet
 /// `Cavity::energy` averaged over facets that a Gaussian of the roughness spreads about `facet`.
 double blurred_energy(const Eigen::Vector3d& o, const Eigen::Vector2d& facet, double roughness);
 
-}  // namespace mica::reference
+}  // namespace mica::host::reference

@@ -4,7 +4,7 @@
 
 #include "host/surface/interpolate.h"
 
-namespace mica::reference {
+namespace mica::host::reference {
 
 CellGrid::CellGrid(const Surface& surface)
     : surface_(surface),
@@ -77,4 +77,4 @@ NormalBox CellGrid::block_bounds(int block_i, int block_j) const {
   return box;
 }
 
-}  // namespace mica::reference
+}  // namespace mica::host::reference

@@ -5,7 +5,7 @@
 
 #include "host/surface/surface.h"
 
-namespace mica::reference {
+namespace mica::host::reference {
 
 /// Bounds of normals on the disk.
 struct NormalBox {
@@ -74,4 +74,4 @@ class CellGrid {
   double origin_;
 };
 
-}  // namespace mica::reference
+}  // namespace mica::host::reference

@@ -5,7 +5,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
-namespace mica::reference {
+namespace mica::host::reference {
 namespace {
 
 /// A centred Gaussian in the plane.
@@ -75,4 +75,4 @@ std::vector<double> GaussianMixture::evaluate(const std::vector<Query>& queries)
   return densities;
 }
 
-}  // namespace mica::reference
+}  // namespace mica::host::reference

@@ -5,7 +5,7 @@
 #include "host/base/query.h"
 #include "host/surface/surface.h"
 
-namespace mica::reference {
+namespace mica::host::reference {
 
 /// The P-NDF of [Yan16]'s mixture in double precision: the plain sum over every element under the footprint,
 /// weights divided by their sum. Elements lie at the centres of `elements` x `elements` squares a quad of
@@ -24,4 +24,4 @@ class GaussianMixture {
   int elements_;
 };
 
-}  // namespace mica::reference
+}  // namespace mica::host::reference

@@ -5,7 +5,7 @@
 #include <boost/math/special_functions/owens_t.hpp>
 #include <cmath>
 
-namespace mica::reference {
+namespace mica::host::reference {
 namespace {
 
 constexpr double two_pi = 6.28318530717958647692;
@@ -129,4 +129,4 @@ void integrate_triangle(const std::array<Whitened, 3>& vertices, double area, co
   integrate_triangle({middle, b, c}, 0.5 * area, rules, integral);
 }
 
-}  // namespace mica::reference
+}  // namespace mica::host::reference

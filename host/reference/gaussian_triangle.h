@@ -6,7 +6,7 @@
 #include "host/reference/running_integral.h"
 #include "host/reference/triangle_batch.h"
 
-namespace mica::reference {
+namespace mica::host::reference {
 
 /// The Gaussian exp(-|w|^2 / 2) restricted to the plane of a triangle in R^4: a triangle in that plane, whose
 /// origin is the plane's point nearest to w = 0, and the squared distance of the plane itself.
@@ -34,4 +34,4 @@ double nearest_squared(const Eigen::Vector2d* vertices, int count);
 void integrate_triangle(const std::array<Whitened, 3>& vertices, double area, const TriangleRules& rules,
                         RunningIntegral* integral);
 
-}  // namespace mica::reference
+}  // namespace mica::host::reference

@@ -7,7 +7,7 @@
 
 #include "host/base/constants.h"
 
-namespace mica::reference {
+namespace mica::host::reference {
 namespace {
 
 constexpr double kUniformShare = 0.125;
@@ -91,4 +91,4 @@ double glint_draw_density(const GlintProcess& process, const Query& query) {
   return kPi / 4 * smooth * sum;
 }
 
-}  // namespace mica::reference
+}  // namespace mica::host::reference

@@ -7,7 +7,7 @@
 
 #include "host/base/constants.h"
 
-namespace mica::reference {
+namespace mica::host::reference {
 namespace {
 
 // kernels/grid/glint_hash.h, written again.
@@ -178,4 +178,4 @@ std::vector<double> GlintProcess::densities_of(const Query& query, int colors) c
   return densities;
 }
 
-}  // namespace mica::reference
+}  // namespace mica::host::reference

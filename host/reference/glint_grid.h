@@ -6,7 +6,7 @@
 #include "host/base/glints.h"
 #include "host/base/query.h"
 
-namespace mica::reference {
+namespace mica::host::reference {
 
 /// What is random about the glint of a cell; kernels/grid/glint_hash.h, written again.
 struct Glint {
@@ -44,4 +44,4 @@ struct GlintProcess {
   Eigen::Vector2d from_disk(const Eigen::Vector2d& point) const;
 };
 
-}  // namespace mica::reference
+}  // namespace mica::host::reference

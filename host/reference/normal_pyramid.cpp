@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace mica::reference {
+namespace mica::host::reference {
 
 NormalPyramid::NormalPyramid(const CellGrid& grid) {
   const int columns = grid.block_columns(), rows = grid.block_rows();
@@ -28,4 +28,4 @@ NormalPyramid::NormalPyramid(const CellGrid& grid) {
   }
 }
 
-}  // namespace mica::reference
+}  // namespace mica::host::reference

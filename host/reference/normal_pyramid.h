@@ -4,7 +4,7 @@
 
 #include "host/reference/cell_grid.h"
 
-namespace mica::reference {
+namespace mica::host::reference {
 
 /// Bounds of the normals over one period of a cell grid, block by block, then over 2x2 nodes of the level
 /// below, up to a single node.
@@ -27,4 +27,4 @@ class NormalPyramid {
   std::vector<Level> levels_;  ///< level 0: one node a block
 };
 
-}  // namespace mica::reference
+}  // namespace mica::host::reference

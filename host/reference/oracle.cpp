@@ -5,10 +5,10 @@
 
 #include <cmath>
 
-#include "host/base/error.h"
 #include "host/reference/best_first_search.h"
+#include "mica/error.h"
 
-namespace mica::reference {
+namespace mica::host::reference {
 
 class Oracle::Implementation {
  public:
@@ -78,4 +78,4 @@ std::vector<double> evaluate(const Surface& surface, const std::vector<Query>& q
   return densities;
 }
 
-}  // namespace mica::reference
+}  // namespace mica::host::reference

@@ -6,7 +6,7 @@
 #include "host/base/query.h"
 #include "host/surface/surface.h"
 
-namespace mica::reference {
+namespace mica::host::reference {
 
 struct OracleResult {
   double density = 0;         ///< D(s), [Yan14] Eq. 6
@@ -48,4 +48,4 @@ OracleResult evaluate(const Surface& surface, const Query& query);
 /// D of many queries, in parallel; results in order.
 std::vector<double> evaluate(const Surface& surface, const std::vector<Query>& queries);
 
-}  // namespace mica::reference
+}  // namespace mica::host::reference

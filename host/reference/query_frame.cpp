@@ -7,9 +7,9 @@
 #include <limits>
 
 #include "host/base/constants.h"
-#include "host/base/error.h"
+#include "mica/error.h"
 
-namespace mica::reference {
+namespace mica::host::reference {
 namespace {
 
 /// a c - b^2 without cancellation: elongated footprints have determinants far smaller than either product.
@@ -76,4 +76,4 @@ Eigen::Vector2d QueryFrame::whiten_position(const Eigen::Vector2d& position_texe
   return {x, (offset.y() - shear_ * x) * inverse_y_};
 }
 
-}  // namespace mica::reference
+}  // namespace mica::host::reference

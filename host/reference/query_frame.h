@@ -5,7 +5,7 @@
 #include "host/base/query.h"
 #include "host/surface/surface.h"
 
-namespace mica::reference {
+namespace mica::host::reference {
 
 using Whitened =
     Eigen::Vector4d;  ///< position and normal in units of their standard deviations, relative to the query
@@ -47,4 +47,4 @@ class QueryFrame {
   double effective_area_, scale_, rounding_;
 };
 
-}  // namespace mica::reference
+}  // namespace mica::host::reference

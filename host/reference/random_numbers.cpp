@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace mica::reference {
+namespace mica::host::reference {
 
 std::uint32_t random_bits(std::uint64_t key, std::uint32_t dimension) {
   constexpr std::uint64_t multiplier = 0xd256d193;
@@ -23,4 +23,4 @@ double random_uniform(std::uint64_t key, std::uint32_t dimension) {
   return upper / 16777216.0;
 }
 
-}  // namespace mica::reference
+}  // namespace mica::host::reference

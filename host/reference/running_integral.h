@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace mica::reference {
+namespace mica::host::reference {
 
 /// Collects an integral of exp(-q/2) du from pieces and decides how accurate the next piece must be, so that
 /// the whole keeps a relative tolerance. Where the integrand is f, an error of tolerance * max(f, floor) per
@@ -67,4 +67,4 @@ class RunningIntegral {
   double q_floor_ = largest_q;
 };
 
-}  // namespace mica::reference
+}  // namespace mica::host::reference

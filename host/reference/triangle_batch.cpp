@@ -5,7 +5,7 @@
 
 #include "host/reference/several_cpus.h"
 
-namespace mica::reference {
+namespace mica::host::reference {
 namespace {
 
 using Lanes = double[TriangleBatch::capacity];
@@ -139,4 +139,4 @@ Gram gram_of(const std::array<Whitened, 3>& v) {
           v[0].dot(v[1]),     v[0].dot(v[2]),     v[1].dot(v[2])};
 }
 
-}  // namespace mica::reference
+}  // namespace mica::host::reference

@@ -6,7 +6,7 @@
 #include "host/reference/query_frame.h"
 #include "host/reference/triangle_rule.h"
 
-namespace mica::reference {
+namespace mica::host::reference {
 
 /// The whitened corners of a block's cells, component by component so that loops over cells become vector
 /// code.
@@ -44,4 +44,4 @@ struct TriangleBatch {
 int choose_rule(const TriangleRules& rules, const Gram& gram, int digits);
 Gram gram_of(const std::array<Whitened, 3>& vertices);
 
-}  // namespace mica::reference
+}  // namespace mica::host::reference

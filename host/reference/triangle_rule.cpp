@@ -8,7 +8,7 @@
 
 #include "host/reference/several_cpus.h"
 
-namespace mica::reference {
+namespace mica::host::reference {
 namespace {
 
 constexpr int pack_points = 8;
@@ -107,4 +107,4 @@ TriangleRules::TriangleRules() {
   }
 }
 
-}  // namespace mica::reference
+}  // namespace mica::host::reference

@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-namespace mica::reference {
+namespace mica::host::reference {
 
 /// A Gaussian's exponent over a triangle: q = lambda^T G lambda at barycentric coordinates lambda, where G
 /// holds the inner products of the three whitened vertices, in the order G00, G11, G22, G01, G02, G12.
@@ -55,4 +55,4 @@ class TriangleRules {
   std::vector<std::array<double, max_digits + 1>> limits_;
 };
 
-}  // namespace mica::reference
+}  // namespace mica::host::reference

@@ -6,7 +6,7 @@
 #include "host/reference/glint_grid.h"
 #include "host/reference/oracle.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 constexpr double kOracleTolerance = 1e-7;  // a thousandth of what is promised
@@ -82,4 +82,4 @@ AuditResult audit(const std::vector<AuditSample>& samples, const std::vector<con
   return result;
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -7,7 +7,7 @@
 #include "host/base/query.h"
 #include "host/surface/surface.h"
 
-namespace mica {
+namespace mica::host {
 
 /// A query of the job, what the device answered, and which surface it was asked of.
 struct AuditSample {
@@ -52,4 +52,4 @@ struct AuditResult {
 /// reference is its definition.
 AuditResult audit(const std::vector<AuditSample>& samples, const std::vector<const Surface*>& surfaces);
 
-}  // namespace mica
+}  // namespace mica::host

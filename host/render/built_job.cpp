@@ -15,7 +15,7 @@
 #include "host/scene/keyframes.h"
 #include "host/surface/in_time.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 constexpr double kUnusedAlpha = 0.1;  // of materials that no shape has
@@ -264,4 +264,4 @@ std::vector<float> PendingBlock::wait() {
   return densities;
 }
 
-}  // namespace mica
+}  // namespace mica::host

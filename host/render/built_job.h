@@ -14,7 +14,7 @@
 #include "host/scene/scene.h"
 #include "host/surface/surface.h"
 
-namespace mica {
+namespace mica::host {
 
 /// Everything that a plan names, built: surfaces, scene, and evaluators on the device; at one frame.
 class BuiltJob {
@@ -96,4 +96,4 @@ class PendingBlock {
   std::vector<Part> parts_;  // by evaluator
 };
 
-}  // namespace mica
+}  // namespace mica::host

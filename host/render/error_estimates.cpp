@@ -5,7 +5,7 @@
 #include "host/methods/auto/auto_evaluator.h"
 #include "host/verify/accuracy.h"
 
-namespace mica {
+namespace mica::host {
 
 std::vector<float> estimate_errors(const BuiltJob& built, const TracedRows& rows,
                                    const std::vector<float>& densities) {
@@ -20,4 +20,4 @@ std::vector<float> estimate_errors(const BuiltJob& built, const TracedRows& rows
   return errors;
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -4,7 +4,7 @@
 
 #include "host/render/built_job.h"
 
-namespace mica {
+namespace mica::host {
 
 /// How far each of the rows' densities may be off, by query: that of `auto` by what its calibration measured
 /// at 95% confidence, that of `triangles` by its promise. Plans with other evaluators
@@ -12,4 +12,4 @@ namespace mica {
 std::vector<float> estimate_errors(const BuiltJob& built, const TracedRows& rows,
                                    const std::vector<float>& densities);
 
-}  // namespace mica
+}  // namespace mica::host

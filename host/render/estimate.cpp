@@ -7,7 +7,7 @@
 #include "host/render/built_job.h"
 #include "host/render/gather_light.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 constexpr int kSampleRows = 48;
@@ -154,4 +154,4 @@ Estimate estimate(const Job& job, const Plan& plan, Device& device) {
           built.device_bytes() + static_cast<std::size_t>(in_flight)};
 }
 
-}  // namespace mica
+}  // namespace mica::host

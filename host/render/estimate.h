@@ -6,7 +6,7 @@
 #include "host/job/job.h"
 #include "host/render/plan.h"
 
-namespace mica {
+namespace mica::host {
 
 /// What rendering a job will take, found by tracing a few rows and evaluating a few of their queries.
 struct Estimate {
@@ -18,4 +18,4 @@ struct Estimate {
 /// Builds what the plan names and tries it on a sample. Throws mica::Error.
 Estimate estimate(const Job& job, const Plan& plan, Device& device);
 
-}  // namespace mica
+}  // namespace mica::host

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace mica {
+namespace mica::host {
 
 Film::Film(int width, int height, const std::vector<std::string>& channels) {
   image_.width = width;
@@ -57,4 +57,4 @@ void Film::add(const TracedRows& rows, const std::vector<float>& densities,
   write("queries.Y", [&](std::size_t pixel) { return static_cast<float>(rows.query_count[pixel]); });
 }
 
-}  // namespace mica
+}  // namespace mica::host

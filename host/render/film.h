@@ -6,7 +6,7 @@
 #include "host/image/image.h"
 #include "host/scene/scene.h"
 
-namespace mica {
+namespace mica::host {
 
 /// Collects traced rows and their densities into the channels of a plan.
 class Film {
@@ -27,4 +27,4 @@ class Film {
   Image image_;
 };
 
-}  // namespace mica
+}  // namespace mica::host

@@ -7,7 +7,7 @@
 #include "host/render/gathered_light.h"
 #include "host/surface/random.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 constexpr std::uint64_t kFrames = ~std::uint64_t{0};  // a stream that no pixel has
@@ -110,4 +110,4 @@ std::size_t add_lit_brdfs(const BuiltJob& built, TracedRows* rows) {
   return count;
 }
 
-}  // namespace mica
+}  // namespace mica::host

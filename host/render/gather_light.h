@@ -4,7 +4,7 @@
 
 #include "host/render/built_job.h"
 
-namespace mica {
+namespace mica::host {
 
 /// Adds to `rows->radiance` what the materials reflect of the light from all around and of other surfaces,
 /// and empties `rows->points`.
@@ -21,4 +21,4 @@ std::size_t gather_light(const BuiltJob& built, TracedRows* rows);
 /// Adds to `rows->radiance` the lights of `rows->lit`, and empties it. @return how many they were.
 std::size_t add_lit_brdfs(const BuiltJob& built, TracedRows* rows);
 
-}  // namespace mica
+}  // namespace mica::host

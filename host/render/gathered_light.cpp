@@ -7,7 +7,7 @@
 #include "host/scene/shading.h"
 #include "host/surface/random.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 /// Independent random numbers of one point.
@@ -129,4 +129,4 @@ void GatheredLight::add(const BrdfSample& sample, std::size_t n) {
   sum_ += tint_.cwiseProduct(weight).cwiseProduct(radiance) * (crossing_.value_scale(local) / density_scale);
 }
 
-}  // namespace mica
+}  // namespace mica::host

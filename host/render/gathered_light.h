@@ -11,7 +11,7 @@
 #include "host/scene/scene.h"
 #include "host/scene/smooth_material.h"
 
-namespace mica {
+namespace mica::host {
 
 /// A direction that was drawn by where light comes from, and that the point sees.
 struct LightDraw {
@@ -73,4 +73,4 @@ class GatheredLight {
   Color sum_ = Color::Zero();
 };
 
-}  // namespace mica
+}  // namespace mica::host

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "host/base/error.h"
+#include "mica/error.h"
 
-namespace mica {
+namespace mica::host {
 namespace {}  // namespace
 
 GridFeatures glint_features(const GlintsDescription& glints) {
@@ -67,4 +67,4 @@ std::unique_ptr<GridEvaluator> make_glint_evaluator(const MaterialDescription& m
                                          glint_features(*material.glints));
 }
 
-}  // namespace mica
+}  // namespace mica::host

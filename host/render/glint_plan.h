@@ -3,7 +3,7 @@
 #include "host/methods/grid/grid_evaluator.h"
 #include "host/render/plan.h"
 
-namespace mica {
+namespace mica::host {
 
 /// What the kernel has to do for a material of glints, and nothing else.
 GridFeatures glint_features(const GlintsDescription& glints);
@@ -18,4 +18,4 @@ int plan_glints(const std::vector<MaterialDescription>& materials, const Materia
 /// The evaluator of a material of glints. @param device must outlive it.
 std::unique_ptr<GridEvaluator> make_glint_evaluator(const MaterialDescription& material, Device& device);
 
-}  // namespace mica
+}  // namespace mica::host

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <set>
 
-#include "host/base/error.h"
 #include "host/methods/beckmanns/lobes.h"
 #include "host/methods/beckmanns/slope_pyramid.h"
 #include "host/methods/cavities/footprint_energy.h"
@@ -18,8 +17,9 @@
 #include "host/scene/scene.h"
 #include "host/surface/map_size.h"
 #include "kernels/types.h"
+#include "mica/error.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 constexpr int kBatchesInFlight = 2;  // one on the device while the next is traced
@@ -216,4 +216,4 @@ std::string describe(const Plan& plan) {
   return text;
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -6,7 +6,7 @@
 
 #include "host/job/job.h"
 
-namespace mica {
+namespace mica::host {
 
 constexpr std::size_t kQueriesABatch = std::size_t{1} << 17;  ///< of one kernel launch, at most
 
@@ -53,4 +53,4 @@ Plan make_plan(const Job& job);
 /// The plan in words, a line an item.
 std::string describe(const Plan& plan);
 
-}  // namespace mica
+}  // namespace mica::host

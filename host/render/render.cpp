@@ -6,13 +6,13 @@
 #include <optional>
 
 #include "host/base/stopwatch.h"
-#include "host/base/version.h"
 #include "host/render/built_job.h"
 #include "host/render/error_estimates.h"
 #include "host/render/film.h"
 #include "host/render/gather_light.h"
+#include "mica/version.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 /// Offers a block's queries to the audit.
@@ -120,4 +120,4 @@ RenderResult render(const Job& job, const Plan& plan, Device& device, const Rend
   return render_frame(built, job.frames.first, device.info(), progress);
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -11,7 +11,7 @@
 #include "host/render/built_job.h"
 #include "host/render/plan.h"
 
-namespace mica {
+namespace mica::host {
 
 /// Wall-clock seconds by phase. `render` is tracing and evaluating together, which overlap; `trace` and
 /// `wait` are the host's shares of it: tracing rows, and waiting for densities that were not ready; `gather`
@@ -47,4 +47,4 @@ RenderResult render_frame(BuiltJob& built, int frame, const DeviceInfo& device,
 /// Renders the first frame of a job.
 RenderResult render(const Job& job, const Plan& plan, Device& device, const RenderProgress& progress);
 
-}  // namespace mica
+}  // namespace mica::host

@@ -5,7 +5,7 @@
 #include "host/scene/smooth_material.h"
 #include "host/surface/random.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 /// A point on a path.
@@ -83,4 +83,4 @@ Color surface_light(const Scene& scene, Ray ray, int bounces, std::uint64_t key)
   return sum;
 }
 
-}  // namespace mica
+}  // namespace mica::host

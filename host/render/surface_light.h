@@ -5,7 +5,7 @@
 #include "host/scene/hit.h"
 #include "host/scene/scene.h"
 
-namespace mica {
+namespace mica::host {
 
 constexpr double kFar = std::numeric_limits<double>::infinity();  ///< as far as a ray goes
 
@@ -15,4 +15,4 @@ constexpr double kFar = std::numeric_limits<double>::infinity();  ///< as far as
 /// @param key all random numbers are a hash of it.
 Color surface_light(const Scene& scene, Ray ray, int bounces, std::uint64_t key);
 
-}  // namespace mica
+}  // namespace mica::host

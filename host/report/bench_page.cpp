@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "host/base/version.h"
 #include "host/report/bench_report.h"
 #include "host/report/chart.h"
 #include "host/report/page_images.h"
+#include "mica/version.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 using bench::Cell;
@@ -338,4 +338,4 @@ std::string bench_page(const bench::Results& results) {
   return html + "</body></html>\n";
 }
 
-}  // namespace mica
+}  // namespace mica::host

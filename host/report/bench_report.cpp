@@ -4,9 +4,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "host/base/version.h"
+#include "mica/version.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 using bench::Cell;
@@ -121,4 +121,4 @@ std::string bench_summary(const bench::Results& results) {
   return text;
 }
 
-}  // namespace mica
+}  // namespace mica::host

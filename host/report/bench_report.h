@@ -4,7 +4,7 @@
 
 #include "host/measure/results.h"
 
-namespace mica {
+namespace mica::host {
 
 /// Everything that was measured, as JSON text; pictures by their numbers only.
 std::string bench_json(const bench::Results& results);
@@ -15,4 +15,4 @@ std::string bench_page(const bench::Results& results);
 /// The speed and error of every measurement, a line each.
 std::string bench_summary(const bench::Results& results);
 
-}  // namespace mica
+}  // namespace mica::host

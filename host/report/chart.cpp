@@ -6,7 +6,7 @@
 #include <cmath>
 #include <map>
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 constexpr double kLeft = 62, kRight = 24, kTop = 28, kBottom = 42;
@@ -158,4 +158,4 @@ std::string draw_bars(const std::vector<Bar>& bars) {
   return svg.str();
 }
 
-}  // namespace mica
+}  // namespace mica::host

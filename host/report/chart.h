@@ -5,7 +5,7 @@
 
 #include "host/report/svg.h"
 
-namespace mica {
+namespace mica::host {
 
 /// How an evaluator is drawn everywhere: colours that colour-blind eyes tell apart (Okabe and Ito), and a
 /// shape of its own besides.
@@ -45,4 +45,4 @@ struct Bar {
 };
 std::string draw_bars(const std::vector<Bar>& bars);
 
-}  // namespace mica
+}  // namespace mica::host

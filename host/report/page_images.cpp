@@ -7,7 +7,7 @@
 
 #include "host/report/svg.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 std::string tag(const std::string& png, int width, int height, int zoom, const std::string& caption) {
@@ -62,4 +62,4 @@ std::string picture_tag(const Image& image, int zoom, const std::string& caption
   return tag(encode_png(image, 0), image.width, image.height, zoom, caption);
 }
 
-}  // namespace mica
+}  // namespace mica::host

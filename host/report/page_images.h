@@ -6,7 +6,7 @@
 
 #include "host/image/image.h"
 
-namespace mica {
+namespace mica::host {
 
 /// RFC 4648.
 std::string base64(const std::string& bytes);
@@ -25,4 +25,4 @@ std::vector<std::uint8_t> difference_pixels(const std::vector<float>& values,
 /// A rendering as its preview shows it.
 std::string picture_tag(const Image& image, int zoom, const std::string& caption);
 
-}  // namespace mica
+}  // namespace mica::host

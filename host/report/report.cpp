@@ -4,9 +4,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "host/base/version.h"
+#include "mica/version.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 using nlohmann::ordered_json;
@@ -122,4 +122,4 @@ std::string render_summary(const DeviceInfo& device, const RenderResult& result)
   return text;
 }
 
-}  // namespace mica
+}  // namespace mica::host

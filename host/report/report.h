@@ -9,7 +9,7 @@
 #include "host/render/estimate.h"
 #include "host/render/render.h"
 
-namespace mica {
+namespace mica::host {
 
 /// The plan and what it is expected to take, as JSON text.
 std::string plan_json(const Job& job, const Plan& plan, const std::optional<Estimate>& estimate);
@@ -26,4 +26,4 @@ std::string frames_json(const std::vector<std::string>& frames);
 /// The same for people, a few lines.
 std::string render_summary(const DeviceInfo& device, const RenderResult& result);
 
-}  // namespace mica
+}  // namespace mica::host

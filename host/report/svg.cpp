@@ -4,7 +4,7 @@
 
 #include <utility>
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 std::string dash(bool dashed) {
@@ -128,4 +128,4 @@ std::string Svg::str() const {
       width_, height_, body_);
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-namespace mica {
+namespace mica::host {
 
 /// Text for HTML and SVG: & < > " ' replaced.
 std::string escape_markup(const std::string& text);
@@ -38,4 +38,4 @@ class Svg {
   std::string body_;
 };
 
-}  // namespace mica
+}  // namespace mica::host

@@ -6,7 +6,7 @@
 #include "host/base/constants.h"
 #include "host/image/image.h"
 
-namespace mica {
+namespace mica::host {
 
 Background::Background(const BackgroundDescription& description) : color_(description.color) {
   if (description.path.empty()) return;
@@ -35,4 +35,4 @@ Color Background::radiance(const Eigen::Vector3d& direction) const {
          below * ((1 - right) * pixel(column, row + 1) + right * pixel(column + 1, row + 1));
 }
 
-}  // namespace mica
+}  // namespace mica::host

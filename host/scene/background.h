@@ -4,7 +4,7 @@
 
 #include "host/scene/description.h"
 
-namespace mica {
+namespace mica::host {
 
 /// Radiance from far away.
 ///
@@ -25,4 +25,4 @@ class Background {
   std::vector<float> pixels_;   ///< R, G, B
 };
 
-}  // namespace mica
+}  // namespace mica::host

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "host/base/constants.h"
-#include "host/base/error.h"
+#include "mica/error.h"
 
-namespace mica {
+namespace mica::host {
 
 PinholeCamera::PinholeCamera(const CameraDescription& description, int width, int height)
     : position_(description.position) {
@@ -30,4 +30,4 @@ CameraRay PinholeCamera::ray(double x, double y) const {
   return {position_, top_left_ + x * ddx_ + y * ddy_, ddx_, ddy_};
 }
 
-}  // namespace mica
+}  // namespace mica::host

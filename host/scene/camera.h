@@ -4,7 +4,7 @@
 
 #include "host/scene/description.h"
 
-namespace mica {
+namespace mica::host {
 
 /// origin + t * direction, and how the direction changes with the image position.
 struct CameraRay {
@@ -24,4 +24,4 @@ class PinholeCamera {
   Eigen::Vector3d position_, top_left_, ddx_, ddy_;
 };
 
-}  // namespace mica
+}  // namespace mica::host

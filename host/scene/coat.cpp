@@ -6,7 +6,7 @@
 #include "host/base/constants.h"
 #include "host/scene/fresnel.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 /// Reflectance of the interface for diffuse light from outside: 2 int F(c) c dc, by the midpoint rule.
@@ -56,16 +56,16 @@ Color CoatInterface::glint_weight(const Fresnel& fresnel, double masking_alpha, 
   // The weight below holds the cosine inside the coat; irradiance is that outside.
   const double cosines = to_light.dot(n) / light_below.dot(n);
   return crossing(to_eye.dot(n), to_light.dot(n)) * cosines *
-         mica::glint_weight(fresnel, masking_alpha, n, eye_below, light_below);
+         mica::host::glint_weight(fresnel, masking_alpha, n, eye_below, light_below);
 }
 
 double CoatInterface::reflection(const Eigen::Vector3d& n, const Eigen::Vector3d& to_eye,
                                  const Eigen::Vector3d& to_light, double light_variance) const {
   const double alpha2 = 2 * (coat_.roughness * coat_.roughness + light_variance);
   const double cosine = (to_eye + to_light).normalized().dot(n);
-  return mica::glint_weight(DielectricFresnel{coat_.ior}, std::sqrt(2.0) * coat_.roughness, n, to_eye,
-                            to_light)[0] *
+  return mica::host::glint_weight(DielectricFresnel{coat_.ior}, std::sqrt(2.0) * coat_.roughness, n, to_eye,
+                                  to_light)[0] *
          beckmann(cosine, alpha2);
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -5,7 +5,7 @@
 #include "host/scene/description.h"
 #include "host/scene/shading.h"
 
-namespace mica {
+namespace mica::host {
 
 /// A smooth interface of a dielectric coat over a material, both parallel: what crosses it.
 ///
@@ -44,4 +44,4 @@ class CoatInterface {
   double inner_reflectance_;  ///< of diffuse light from below
 };
 
-}  // namespace mica
+}  // namespace mica::host

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace mica {
+namespace mica::host {
 
 CoatCrossing::CoatCrossing(const std::optional<CoatInterface>& coat, const Eigen::Vector3d& view)
     : coat_(coat), view_(view), view_below_(below(view)) {}
@@ -28,4 +28,4 @@ double CoatCrossing::density_scale(const Eigen::Vector3d& light) const {
   return coat_ ? light.z() / (coat_->ior() * coat_->ior() * below(light).z()) : 1;
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -5,7 +5,7 @@
 
 #include "host/scene/coat.h"
 
-namespace mica {
+namespace mica::host {
 
 /// Directions of a BRDF that may lie below a coat, seen from a view above it. All are unit and in the tangent
 /// frame; without a coat above and below are the same.
@@ -32,4 +32,4 @@ class CoatCrossing {
   Eigen::Vector3d view_, view_below_;
 };
 
-}  // namespace mica
+}  // namespace mica::host

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace mica {
+namespace mica::host {
 
 Curve::Curve(std::vector<Point> points) : points_(std::move(points)) {}
 
@@ -25,4 +25,4 @@ double Curve::at(double x) const {
          length * ((t3 - 2 * t2 + t) * slope(end - 1) + (t3 - t2) * slope(end));
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-namespace mica {
+namespace mica::host {
 
 /// A smooth curve y(x) through given points: cubic Hermite pieces whose slopes are those of the chords beside
 /// a point. Constant beyond both ends.
@@ -22,4 +22,4 @@ class Curve {
   std::vector<Point> points_;
 };
 
-}  // namespace mica
+}  // namespace mica::host

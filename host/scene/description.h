@@ -10,7 +10,7 @@
 #include "host/base/masking.h"
 #include "host/scene/glints_description.h"
 
-namespace mica {
+namespace mica::host {
 
 /// Linear RGB, or any per-channel triple.
 using Color = Eigen::Vector3d;
@@ -165,4 +165,4 @@ struct SceneDescription {
   std::vector<Keyframes<LightDescription>> light_keys = {};  ///< by light; lights beyond its end stand still
 };
 
-}  // namespace mica
+}  // namespace mica::host

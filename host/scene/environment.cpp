@@ -6,12 +6,12 @@
 #include <cmath>
 
 #include "host/base/constants.h"
-#include "host/base/error.h"
 #include "host/image/image.h"
 #include "host/scene/background.h"
 #include "host/scene/piecewise_constant.h"
+#include "mica/error.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 /// Mean over a pixel's extent of what is linear between it and its neighbours: (1, 6, 1) / 8 an axis.
@@ -151,4 +151,4 @@ double Environment::pdf(const Eigen::Vector3d& direction) const {
   return sum;
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -6,7 +6,7 @@
 #include "host/scene/description.h"
 #include "host/scene/piecewise_constant.h"
 
-namespace mica {
+namespace mica::host {
 
 /// Light from all around and from far away, and directions drawn by how bright they are: the sum of a scene's
 /// environment lights. Immutable after construction; used from any number of threads.
@@ -38,4 +38,4 @@ class Environment {
   PiecewiseConstant choice_;                    // among them, by power
 };
 
-}  // namespace mica
+}  // namespace mica::host

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace mica {
+namespace mica::host {
 
 Eigen::Matrix<double, 3, 2> position_differentials(const CameraRay& ray, const Hit& hit) {
   // Bounds what follows; such a footprint is shortened later.
@@ -50,4 +50,4 @@ Eigen::Matrix2d footprint_covariance(const Eigen::Matrix2d& duv, double sigma_pi
   return bounded;
 }
 
-}  // namespace mica
+}  // namespace mica::host

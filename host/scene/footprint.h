@@ -5,7 +5,7 @@
 #include "host/scene/camera.h"
 #include "host/scene/hit.h"
 
-namespace mica {
+namespace mica::host {
 
 /// Change of the position per pixel to the right (first column) and down (second column), on the tangent
 /// plane of the hit: ray differentials [Igehy99], Homan Igehy, "Tracing Ray Differentials", SIGGRAPH 1999,
@@ -22,4 +22,4 @@ Eigen::Matrix2d uv_differentials(const CameraRay& ray, const Hit& hit);
 /// (lengthening the other one instead would blur, and cost more).
 Eigen::Matrix2d footprint_covariance(const Eigen::Matrix2d& duv, double sigma_pixels);
 
-}  // namespace mica
+}  // namespace mica::host

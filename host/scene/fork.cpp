@@ -4,11 +4,11 @@
 #include <cmath>
 
 #include "host/base/constants.h"
-#include "host/base/error.h"
 #include "host/scene/curve.h"
 #include "host/scene/loft.h"
+#include "mica/error.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 constexpr int fork_steps = 320, fork_steps_around = 128, tine_steps = 120, tine_steps_around = 64;
@@ -95,4 +95,4 @@ TriangleMesh make_fork(const ForkShape& fork) {
   return mesh;
 }
 
-}  // namespace mica
+}  // namespace mica::host

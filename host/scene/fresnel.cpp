@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 /// Schlick, "An Inexpensive BRDF Model for Physically-Based Rendering" (1994), Eq. 15.
@@ -53,4 +53,4 @@ Color reflectance(const Fresnel& fresnel, double cos_i) {
   return std::visit(Reflectance{std::clamp(cos_i, 0.0, 1.0)}, fresnel);
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -2,7 +2,7 @@
 
 #include "host/scene/description.h"
 
-namespace mica {
+namespace mica::host {
 
 /// Unpolarised reflectance of a smooth boundary towards a medium of relative index `ior`, seen from outside.
 /// @param cos_i cosine of the angle of incidence, [0, 1]. @return [0, 1].
@@ -14,4 +14,4 @@ double conductor_reflectance(double cos_i, double eta, double k);
 /// Reflectance of each channel.
 Color reflectance(const Fresnel& fresnel, double cos_i);
 
-}  // namespace mica
+}  // namespace mica::host

@@ -9,15 +9,15 @@
 #include <limits>
 #include <variant>
 
-#include "host/base/error.h"
 #include "host/scene/fork.h"
 #include "host/scene/jar.h"
 #include "host/scene/obj.h"
 #include "host/scene/placement.h"
 #include "host/scene/shell.h"
 #include "host/scene/spoon.h"
+#include "mica/error.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 struct DeviceRelease {
@@ -36,7 +36,7 @@ using GeometryHandle = std::unique_ptr<std::remove_pointer_t<RTCGeometry>, Geome
 void check(RTCDevice device, const char* action) {
   const RTCError error = rtcGetDeviceError(device);
   if (error != RTC_ERROR_NONE)
-    throw Error(ExitCode::device, fmt::format("Embree cannot {}: error {}", action, static_cast<int>(error)));
+    throw DeviceError(fmt::format("Embree cannot {}: error {}", action, static_cast<int>(error)));
 }
 
 /// What Embree found is made exact by the shape itself.
@@ -285,4 +285,4 @@ bool Geometry::occluded(const Hit& hit, const Eigen::Vector3d& direction, double
   return ray.tfar < 0;
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -8,7 +8,7 @@
 #include "host/scene/description.h"
 #include "host/scene/hit.h"
 
-namespace mica {
+namespace mica::host {
 
 /// A ray that leaves a hit along `direction`, on the side of the surface to which that points.
 Ray ray_from(const Hit& hit, const Eigen::Vector3d& direction);
@@ -37,4 +37,4 @@ class Geometry {
   std::unique_ptr<Implementation> implementation_;
 };
 
-}  // namespace mica
+}  // namespace mica::host

@@ -8,7 +8,7 @@
 #include "host/scene/footprint.h"
 #include "host/scene/fresnel.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 constexpr int kStretchSteps = 8;       // of a texture, from round to the material's stretch
@@ -134,4 +134,4 @@ double GlintMaterial::microroughness(const GlintPlace& place, const LobesSeen& s
   return std::min(std::sqrt(place.microroughness * place.microroughness + std::max(widened, 0.0)), 1.0);
 }
 
-}  // namespace mica
+}  // namespace mica::host

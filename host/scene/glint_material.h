@@ -11,7 +11,7 @@
 #include "host/scene/shading.h"
 #include "host/scene/texture.h"
 
-namespace mica {
+namespace mica::host {
 
 /// A process of glints as one footprint sees it: where, and in which axes.
 struct GlintPlace {
@@ -55,4 +55,4 @@ class GlintMaterial {
   std::optional<Texture> density_, alpha_, microroughness_, stretch_, color_;
 };
 
-}  // namespace mica
+}  // namespace mica::host

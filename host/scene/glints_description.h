@@ -7,7 +7,7 @@
 
 #include "host/base/glints.h"
 
-namespace mica {
+namespace mica::host {
 
 /// Files of images that multiply a parameter of glints over the shape's uv; empty: nothing does.
 struct GlintTextures {
@@ -35,4 +35,4 @@ struct GlintsDescription {
   GlintTextures textures;
 };
 
-}  // namespace mica
+}  // namespace mica::host

@@ -6,7 +6,7 @@
 
 #include "host/base/constants.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 /// Some 30 roundings of the largest number that goes into an intersection with a primitive of this extent.
@@ -98,4 +98,4 @@ Hit hit_triangle(const TriangleMesh& mesh, std::uint32_t triangle, const Ray& ra
   return hit;
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -7,7 +7,7 @@
 #include "host/scene/description.h"
 #include "host/scene/mesh.h"
 
-namespace mica {
+namespace mica::host {
 
 /// origin + t * direction; the direction may have any length.
 struct Ray {
@@ -38,4 +38,4 @@ Hit hit_sphere(const SphereShape& sphere, const Ray& ray, double t_near);
 
 Hit hit_triangle(const TriangleMesh& mesh, std::uint32_t triangle, const Ray& ray);
 
-}  // namespace mica
+}  // namespace mica::host

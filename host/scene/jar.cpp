@@ -3,11 +3,11 @@
 #include <cmath>
 
 #include "host/base/constants.h"
-#include "host/base/error.h"
 #include "host/scene/loft.h"
 #include "host/scene/outline.h"
+#include "mica/error.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 // Distance from the axis and height, in units of the jar's height.
@@ -37,4 +37,4 @@ TriangleMesh make_jar(const JarShape& jar) {
   return mesh;
 }
 
-}  // namespace mica
+}  // namespace mica::host

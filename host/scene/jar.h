@@ -3,7 +3,7 @@
 #include "host/scene/description.h"
 #include "host/scene/mesh.h"
 
-namespace mica {
+namespace mica::host {
 
 /// A round jar, part "body", and its lid with a knob, part "lid". u runs around both, v along their outline
 /// from the bottom up, both in units of the body's circumference: texels are square on the body, and a map is
@@ -11,4 +11,4 @@ namespace mica {
 /// Throws UsageError unless size is positive.
 TriangleMesh make_jar(const JarShape& jar);
 
-}  // namespace mica
+}  // namespace mica::host

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 template <class Value>
@@ -69,4 +69,4 @@ std::vector<LightDescription> lights_at(const SceneDescription& scene, double fr
   return lights;
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -4,7 +4,7 @@
 
 #include "host/scene/description.h"
 
-namespace mica {
+namespace mica::host {
 
 // What moves, at one frame: linear between its keyframes, still before the first and after the last.
 
@@ -13,4 +13,4 @@ CameraDescription camera_at(const SceneDescription& scene, double frame);
 /// All keys of a light are of its own kind.
 std::vector<LightDescription> lights_at(const SceneDescription& scene, double frame);
 
-}  // namespace mica
+}  // namespace mica::host

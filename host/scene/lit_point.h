@@ -7,7 +7,7 @@
 #include "host/scene/hit.h"
 #include "host/scene/shading.h"
 
-namespace mica {
+namespace mica::host {
 
 /// A footprint that gathers light from all around, in a traced subpixel.
 struct LitPoint {
@@ -29,4 +29,4 @@ struct LitBrdf {
   Eigen::Vector3f weight_multiple = Eigen::Vector3f::Zero();  ///< the same of light that bounced more often
 };
 
-}  // namespace mica
+}  // namespace mica::host

@@ -5,7 +5,7 @@
 
 #include "host/base/constants.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 constexpr double largest_roughness = 1;  // that evaluators take
@@ -51,4 +51,4 @@ LobesSeen see_lobes(const MaterialDescription& material, const std::optional<Coa
               : see_bare(material, masking_alpha, n, to_eye, incident);
 }
 
-}  // namespace mica
+}  // namespace mica::host

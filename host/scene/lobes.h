@@ -6,7 +6,7 @@
 #include "host/scene/description.h"
 #include "host/scene/shading.h"
 
-namespace mica {
+namespace mica::host {
 
 /// What a material sends towards the eye of the light from one direction, by unit irradiance of the light.
 struct LobesSeen {
@@ -21,4 +21,4 @@ LobesSeen see_lobes(const MaterialDescription& material, const std::optional<Coa
                     double masking_alpha, const Eigen::Vector3d& n, const Eigen::Vector3d& to_eye,
                     const Illumination& incident);
 
-}  // namespace mica
+}  // namespace mica::host

@@ -6,7 +6,7 @@
 
 #include "host/base/constants.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 constexpr double difference = 1e-5;  // of q and of the angle, for derivatives
@@ -62,4 +62,4 @@ void place_body(const Eigen::Vector3d& center, double size, TriangleMesh* mesh) 
     position = (center + size * position.cast<double>()).cast<float>();
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -4,7 +4,7 @@
 
 #include "host/scene/mesh.h"
 
-namespace mica {
+namespace mica::host {
 
 /// Cross section of a long, thin, closed body at one place of its length, which runs along x.
 struct LoftSection {
@@ -25,4 +25,4 @@ void add_loft(const std::function<LoftSection(double q)>& section, int steps, in
 /// Scales a mesh whose length is one to `size`, and moves it to `center`.
 void place_body(const Eigen::Vector3d& center, double size, TriangleMesh* mesh);
 
-}  // namespace mica
+}  // namespace mica::host

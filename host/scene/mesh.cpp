@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
@@ -41,4 +41,4 @@ void set_tangents(TriangleMesh* mesh) {
   for (const Eigen::Vector3d& sum : sums) mesh->tangents.push_back(sum.cast<float>());
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace mica {
+namespace mica::host {
 
 /// Triangles with one position, unit normal, texture coordinate and tangent a vertex, interpolated linearly.
 struct TriangleMesh {
@@ -33,4 +33,4 @@ UvGradients uv_gradients(const TriangleMesh& mesh, std::uint32_t triangle);
 /// the tangent frame and with it the half vector turn smoothly over the mesh.
 void set_tangents(TriangleMesh* mesh);
 
-}  // namespace mica
+}  // namespace mica::host

@@ -16,9 +16,9 @@
 #include <system_error>
 #include <tuple>
 
-#include "host/base/error.h"
+#include "mica/error.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 using Vector3 = Eigen::Vector3d;
@@ -233,4 +233,4 @@ TriangleMesh load_obj(const std::string& path) {
   return ObjReader(path).read();
 }
 
-}  // namespace mica
+}  // namespace mica::host

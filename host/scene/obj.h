@@ -4,7 +4,7 @@
 
 #include "host/scene/mesh.h"
 
-namespace mica {
+namespace mica::host {
 
 /// Reads the polygons of a Wavefront OBJ file; groups, lines and points in it are passed over. The faces of
 /// each material that `usemtl` names are a part of the mesh of that name; those before the first are
@@ -15,4 +15,4 @@ namespace mica {
 /// and what was expected.
 TriangleMesh load_obj(const std::string& path);
 
-}  // namespace mica
+}  // namespace mica::host

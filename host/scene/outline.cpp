@@ -4,7 +4,7 @@
 
 #include "host/base/constants.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 constexpr int outline_steps_around = 360, steps_an_arc = 24, steps_a_line = 24;
@@ -82,4 +82,4 @@ void add_revolved(const std::vector<OutlinePoint>& outline, double circumference
   }
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -5,7 +5,7 @@
 
 #include "host/scene/mesh.h"
 
-namespace mica {
+namespace mica::host {
 
 /// A point of an outline in the half plane (distance from the axis, height), and the outline's unit normal
 /// there.
@@ -29,4 +29,4 @@ std::vector<OutlinePoint> rounded_outline(const std::vector<OutlineCorner>& corn
 void add_revolved(const std::vector<OutlinePoint>& outline, double circumference, const std::string& part,
                   TriangleMesh* mesh);
 
-}  // namespace mica
+}  // namespace mica::host

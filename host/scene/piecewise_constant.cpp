@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace mica {
+namespace mica::host {
 
 PiecewiseConstant::PiecewiseConstant(const std::vector<double>& weights) {
   cumulative_.reserve(weights.size() + 1);
@@ -22,4 +22,4 @@ std::size_t PiecewiseConstant::sample(double* uniform) const {
   return item;
 }
 
-}  // namespace mica
+}  // namespace mica::host

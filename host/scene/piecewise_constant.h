@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace mica {
+namespace mica::host {
 
 /// A random choice among items in proportion to weights; the rest of the uniform number is uniform again.
 class PiecewiseConstant {
@@ -26,4 +26,4 @@ class PiecewiseConstant {
   double sum_ = 0;
 };
 
-}  // namespace mica
+}  // namespace mica::host

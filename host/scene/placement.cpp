@@ -1,9 +1,9 @@
 #include "host/scene/placement.h"
 
 #include "host/base/constants.h"
-#include "host/base/error.h"
+#include "mica/error.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 constexpr double degree = kPi / 180;
@@ -45,4 +45,4 @@ Hit PlacedFrame::to_scene(Hit hit) const {
   return hit;
 }
 
-}  // namespace mica
+}  // namespace mica::host

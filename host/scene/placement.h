@@ -5,7 +5,7 @@
 #include "host/scene/description.h"
 #include "host/scene/hit.h"
 
-namespace mica {
+namespace mica::host {
 
 /// From the coordinates in which a shape is described to those of the scene, and back.
 class PlacedFrame {
@@ -27,4 +27,4 @@ class PlacedFrame {
   Eigen::Matrix3d normal_to_scene_;  ///< inverse transposed
 };
 
-}  // namespace mica
+}  // namespace mica::host

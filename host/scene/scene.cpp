@@ -9,7 +9,6 @@
 #include <limits>
 #include <utility>
 
-#include "host/base/error.h"
 #include "host/scene/background.h"
 #include "host/scene/camera.h"
 #include "host/scene/coat.h"
@@ -19,8 +18,9 @@
 #include "host/scene/glint_material.h"
 #include "host/scene/lobes.h"
 #include "host/scene/shading.h"
+#include "mica/error.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 constexpr double default_masking_alpha = 0.1;
@@ -394,4 +394,4 @@ TracedRows Scene::trace(int first_row, int row_count) const {
   return rows;
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -13,7 +13,7 @@
 #include "host/scene/geometry.h"
 #include "host/scene/lit_point.h"
 
-namespace mica {
+namespace mica::host {
 
 /// One light seen in one footprint: the P-NDF to ask for, and what to multiply it with.
 struct GlintQuery {
@@ -86,4 +86,4 @@ class Scene {
   std::unique_ptr<Implementation> implementation_;
 };
 
-}  // namespace mica
+}  // namespace mica::host

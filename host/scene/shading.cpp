@@ -9,7 +9,7 @@
 #include "host/microfacet/masking.h"
 #include "host/scene/fresnel.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 struct Illuminate {
@@ -129,4 +129,4 @@ Color glint_weight(const Fresnel& fresnel, double masking_alpha, const Eigen::Ve
   return reflectance(fresnel, to_light.dot(half)) * (G / (4 * cos_o));
 }
 
-}  // namespace mica
+}  // namespace mica::host

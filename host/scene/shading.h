@@ -5,7 +5,7 @@
 #include "host/scene/description.h"
 #include "host/scene/hit.h"
 
-namespace mica {
+namespace mica::host {
 
 /// Directions closer to the horizon of a surface than this cosine neither see nor light it.
 constexpr double min_cosine = 1e-6;
@@ -69,4 +69,4 @@ double half_vector_variance(double light_variance, double cos_d);
 Color glint_weight(const Fresnel& fresnel, double masking_alpha, const Eigen::Vector3d& n,
                    const Eigen::Vector3d& to_eye, const Eigen::Vector3d& to_light);
 
-}  // namespace mica
+}  // namespace mica::host

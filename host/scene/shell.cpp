@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "host/base/constants.h"
-#include "host/base/error.h"
+#include "mica/error.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 // [Raup66]'s parameters; lengths in units of the last whorl's distance from the axis.
@@ -191,4 +191,4 @@ TriangleMesh make_shell(const ShellShape& shell) {
   return mesh;
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -3,7 +3,7 @@
 #include "host/scene/description.h"
 #include "host/scene/mesh.h"
 
-namespace mica {
+namespace mica::host {
 
 /// A snail shell: a circle that grows by a constant factor a turn while it winds about an axis [Raup66], with
 /// a rounded apex and a lip that turns inwards, so that the surface is closed. The axis leans; the bounding
@@ -18,4 +18,4 @@ namespace mica {
 /// Throws UsageError unless size is positive and 1 <= turns <= 12.
 TriangleMesh make_shell(const ShellShape& shell);
 
-}  // namespace mica
+}  // namespace mica::host

@@ -10,7 +10,7 @@
 #include "host/scene/lobes.h"
 #include "host/scene/shading.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 constexpr double least_alpha =
@@ -73,4 +73,4 @@ double SmoothMaterial::pdf(const Eigen::Vector3d& view, const Eigen::Vector3d& l
   return sum / (diffuse_weight_ + coat_weight_ + normals_weight_);
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -7,7 +7,7 @@
 #include "host/scene/coat.h"
 #include "host/scene/description.h"
 
-namespace mica {
+namespace mica::host {
 
 /// A material's lobes without glints: what needs no P-NDF (diffuse, a coat's own reflection), and with them,
 /// where light bounces between shapes, a Beckmann lobe with the roughness of the whole map. All directions
@@ -40,4 +40,4 @@ class SmoothMaterial {
   VisibleNormals coat_normals_, normals_;
 };
 
-}  // namespace mica
+}  // namespace mica::host

@@ -3,11 +3,11 @@
 #include <cmath>
 
 #include "host/base/constants.h"
-#include "host/base/error.h"
 #include "host/scene/curve.h"
 #include "host/scene/loft.h"
+#include "mica/error.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 constexpr int spoon_steps = 320, spoon_steps_around = 160;
@@ -61,4 +61,4 @@ TriangleMesh make_spoon(const SpoonShape& spoon) {
   return mesh;
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -5,7 +5,7 @@
 
 #include "host/image/image.h"
 
-namespace mica {
+namespace mica::host {
 
 Texture::Texture(const std::string& path) {
   Image image = read_rgb(path);
@@ -29,4 +29,4 @@ Eigen::Vector3d Texture::at(const Eigen::Vector2d& uv) const {
          below * ((1 - right) * pixel(column, row + 1) + right * pixel(column + 1, row + 1));
 }
 
-}  // namespace mica
+}  // namespace mica::host

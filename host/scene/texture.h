@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace mica {
+namespace mica::host {
 
 /// An image over a shape's uv: [0, 1)^2, repeated; row 0 at the top, where v is near 1. Bilinear between the
 /// centres of pixels.
@@ -23,4 +23,4 @@ class Texture {
   std::vector<float> pixels_;
 };
 
-}  // namespace mica
+}  // namespace mica::host

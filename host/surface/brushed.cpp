@@ -7,7 +7,7 @@
 #include "host/surface/settings.h"
 #include "host/surface/synthesis.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 constexpr double kLeastCorrelation = 1e-3;  // texels; far below what any grid resolves
@@ -45,4 +45,4 @@ std::vector<Eigen::Vector2d> synthesise_brushed(const BrushedSurface& brushed, S
                                          a * a.transpose() + b * b.transpose(), brushed.seed);
 }
 
-}  // namespace mica
+}  // namespace mica::host

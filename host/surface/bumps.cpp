@@ -8,7 +8,7 @@
 #include "host/surface/settings.h"
 #include "host/surface/synthesis.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 enum BumpStream : std::uint64_t { bump_u_stream, bump_v_stream, bump_angle_stream };
@@ -72,4 +72,4 @@ std::vector<Eigen::Vector2d> synthesise_bumps(const BumpsSurface& bumps, Surface
   return synthesis::normals_of_features(bumps.resolution, placed);
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -8,7 +8,7 @@
 #include "host/surface/settings.h"
 #include "host/surface/synthesis.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 enum DentStream : std::uint64_t { dent_u_stream, dent_v_stream, dent_radius_stream };
@@ -60,4 +60,4 @@ std::vector<Eigen::Vector2d> synthesise_dents(const DentsSurface& dents, Surface
   return synthesis::normals_of_features(dents.resolution, placed);
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -5,7 +5,7 @@
 #include <variant>
 #include <vector>
 
-namespace mica {
+namespace mica::host {
 
 enum class Interpolation { nearest, bilinear, bicubic };
 enum class Encoding { unorm, signed_float, height, slope };  ///< `signed` is a keyword: signed_float
@@ -121,4 +121,4 @@ struct SurfaceLayer {
   double weight = 1;           ///< that its slopes are multiplied by, -100..100
 };
 
-}  // namespace mica
+}  // namespace mica::host

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <cmath>
 
-namespace mica {
+namespace mica::host {
 
 /// Farthest that a stored normal may lie from the centre of the disk: 89.2 degrees off the geometric normal.
 /// Beyond it the slope, and with it every Jacobian, loses its meaning.
@@ -20,4 +20,4 @@ inline Eigen::Vector2d slope_from_disk(const Eigen::Vector2d& s) {
   return -s / std::sqrt(1 - s.squaredNorm());
 }
 
-}  // namespace mica
+}  // namespace mica::host

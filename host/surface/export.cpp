@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace mica {
+namespace mica::host {
 
 std::vector<float> to_signed_rgb(const Surface& surface) {
   std::vector<float> pixels;
@@ -18,4 +18,4 @@ std::vector<float> to_signed_rgb(const Surface& surface) {
   return pixels;
 }
 
-}  // namespace mica
+}  // namespace mica::host

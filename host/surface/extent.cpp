@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace mica::synthesis {
+namespace mica::host::synthesis {
 namespace {
 
 /// Texels whose centres lie in [low, high].
@@ -38,4 +38,4 @@ TexelRange Extent::columns(double center_u, double offset_v) const {
   return texels_between(center_u + low, center_u + high);
 }
 
-}  // namespace mica::synthesis
+}  // namespace mica::host::synthesis

@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-namespace mica::synthesis {
+namespace mica::host::synthesis {
 
 /// Texels from `first` to `last`, which may lie outside the period; none when last < first.
 struct TexelRange {
@@ -21,4 +21,4 @@ struct Extent {
   TexelRange columns(double center_u, double offset_v) const;
 };
 
-}  // namespace mica::synthesis
+}  // namespace mica::host::synthesis

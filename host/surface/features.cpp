@@ -1,6 +1,6 @@
 #include "host/surface/features.h"
 
-namespace mica::synthesis {
+namespace mica::host::synthesis {
 
 void RowBands::add(std::uint32_t feature, const TexelRange& rows) {
   for (long row = rows.first; row <= rows.last; ++row) {
@@ -9,4 +9,4 @@ void RowBands::add(std::uint32_t feature, const TexelRange& rows) {
   }
 }
 
-}  // namespace mica::synthesis
+}  // namespace mica::host::synthesis

@@ -11,7 +11,7 @@
 #include "host/surface/extent.h"
 
 /// Surfaces of many small features (scratches, dents, bumps) in a plane, around the torus.
-namespace mica::synthesis {
+namespace mica::host::synthesis {
 
 /// Bands of neighbouring rows, and which features reach into each: what one task draws.
 class RowBands {
@@ -74,4 +74,4 @@ std::vector<Eigen::Vector2d> normals_of_features(int resolution, const std::vect
   return texels;
 }
 
-}  // namespace mica::synthesis
+}  // namespace mica::host::synthesis

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-namespace mica {
+namespace mica::host {
 
 /// Fills the texels that are not valid, from the rim of each hole inwards: each with the mean of those of its
 /// eight neighbours (periodic) that are valid or were filled a round earlier. At least one texel must be
@@ -42,4 +42,4 @@ void fill_holes(int width, int height, std::vector<bool> valid, std::vector<T>& 
   }
 }
 
-}  // namespace mica
+}  // namespace mica::host

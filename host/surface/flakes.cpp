@@ -4,13 +4,13 @@
 #include <cmath>
 
 #include "host/base/constants.h"
-#include "host/base/error.h"
 #include "host/surface/disk.h"
 #include "host/surface/poisson_disk.h"
 #include "host/surface/random.h"
 #include "host/surface/synthesis.h"
+#include "mica/error.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 /// Mean distance of neighbouring centres over the least, of the sets that PoissonDisk throws (measured; a
@@ -72,4 +72,4 @@ std::vector<Eigen::Vector2d> Flakes::texel_normals() const {
   return texels;
 }
 
-}  // namespace mica
+}  // namespace mica::host

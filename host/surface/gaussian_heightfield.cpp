@@ -4,7 +4,7 @@
 
 #include "host/surface/height_modes.h"
 
-namespace mica::synthesis {
+namespace mica::host::synthesis {
 
 std::vector<Eigen::Vector2d> gaussian_heightfield(int resolution, double rms_slope,
                                                   const Eigen::Matrix2d& squared_correlation,
@@ -23,4 +23,4 @@ std::vector<Eigen::Vector2d> gaussian_heightfield(int resolution, double rms_slo
   });
 }
 
-}  // namespace mica::synthesis
+}  // namespace mica::host::synthesis

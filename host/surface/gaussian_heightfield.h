@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace mica::synthesis {
+namespace mica::host::synthesis {
 
 /// Normals of a periodic Gaussian heightfield of autocorrelation exp(-d^T C^-1 d) at offset d.
 ///
@@ -16,4 +16,4 @@ std::vector<Eigen::Vector2d> gaussian_heightfield(int resolution, double rms_slo
                                                   const Eigen::Matrix2d& squared_correlation,
                                                   std::uint64_t seed);
 
-}  // namespace mica::synthesis
+}  // namespace mica::host::synthesis

@@ -9,7 +9,7 @@
 #include "host/surface/disk.h"
 #include "host/surface/random.h"
 
-namespace mica::synthesis {
+namespace mica::host::synthesis {
 namespace {
 
 /// Index of `periods` in a discrete Fourier transform.
@@ -77,4 +77,4 @@ std::vector<Eigen::Vector2d> normals_of_modes(
   return normals;
 }
 
-}  // namespace mica::synthesis
+}  // namespace mica::host::synthesis

@@ -9,7 +9,7 @@
 #include "host/base/constants.h"
 
 /// Periodic heightfields from their Fourier modes.
-namespace mica::synthesis {
+namespace mica::host::synthesis {
 
 /// Wave vector of the mode with m periods along u and n along v, radians a texel.
 inline Eigen::Vector2d wave_vector(int resolution, int m, int n) {
@@ -35,4 +35,4 @@ double phase(std::uint64_t seed, int m, int n);
 std::vector<Eigen::Vector2d> normals_of_modes(
     int resolution, const std::function<std::complex<double>(int m, int n)>& height_mode);
 
-}  // namespace mica::synthesis
+}  // namespace mica::host::synthesis

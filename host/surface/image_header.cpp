@@ -9,9 +9,9 @@
 #include <fstream>
 #include <system_error>
 
-#include "host/base/error.h"
+#include "mica/error.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 constexpr std::int64_t kMaximumSide = 16384;
@@ -155,4 +155,4 @@ ImageFileFormat identify_image(const std::string& path) {
   return format;
 }
 
-}  // namespace mica
+}  // namespace mica::host

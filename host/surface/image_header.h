@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-namespace mica {
+namespace mica::host {
 
 /// Which reader a file needs, told by its first bytes: names are those of OpenImageIO's plug-ins.
 struct ImageFileFormat {
@@ -21,4 +21,4 @@ ImageFileFormat identify_image(const std::string& path);
 void check_declared_size(const std::string& path, std::uintmax_t file_size, std::int64_t width,
                          std::int64_t height, std::int64_t channels, std::int64_t bytes_a_channel);
 
-}  // namespace mica
+}  // namespace mica::host

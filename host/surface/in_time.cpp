@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace mica {
+namespace mica::host {
 
 bool moves(const SurfaceDescription& surface) {
   if (const auto* waves = std::get_if<WavesSurface>(&surface.source)) return waves->time_scale != 0;
@@ -20,4 +20,4 @@ SurfaceDescription after(SurfaceDescription surface, double seconds) {
   return surface;
 }
 
-}  // namespace mica
+}  // namespace mica::host

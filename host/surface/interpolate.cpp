@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 /// Linear interpolation on the grid of `vertex(a, b)` at integer positions, each cell split from (a+1, b) to
@@ -56,4 +56,4 @@ Eigen::Vector2d normal_at(const Surface& surface, const Eigen::Vector2d& positio
   return piecewise_linear(4 * from_center, [&](long a, long b) { return bicubic_vertex(surface, a, b); });
 }
 
-}  // namespace mica
+}  // namespace mica::host

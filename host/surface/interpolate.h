@@ -4,7 +4,7 @@
 
 #include "host/surface/surface.h"
 
-namespace mica {
+namespace mica::host {
 
 /// Catmull-Rom weights of the four samples at -1, 0, 1, 2 for a position `f` in [0, 1] between the middle
 /// two. They add up to 1; at f = 0 and 1 they select one sample exactly.
@@ -27,4 +27,4 @@ Eigen::Vector2d bicubic_vertex(const Surface& surface, long a, long b);
 ///   large coordinates first to keep their fraction.
 Eigen::Vector2d normal_at(const Surface& surface, const Eigen::Vector2d& position_texels);
 
-}  // namespace mica
+}  // namespace mica::host

@@ -1,12 +1,12 @@
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
-#include "host/base/error.h"
 #include "host/surface/disk.h"
 #include "host/surface/settings.h"
 #include "host/surface/synthesis.h"
+#include "mica/error.h"
 
-namespace mica {
+namespace mica::host {
 
 Surface synthesise_layers(const LayersSurface& description, Interpolation interpolation,
                           SurfaceReport& report) {
@@ -34,4 +34,4 @@ Surface synthesise_layers(const LayersSurface& description, Interpolation interp
   return Surface(width, height, interpolation, std::move(texels));
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <utility>
 
-#include "host/base/error.h"
 #include "host/surface/disk.h"
 #include "host/surface/fill_holes.h"
+#include "mica/error.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 constexpr double kShortestNormal = 0.01;  // what is shorter has no direction to speak of
@@ -237,4 +237,4 @@ Surface load_map(const MapFile& file, Interpolation interpolation, SurfaceReport
   return Surface(pixels.width, pixels.height, interpolation, decode_normals(file, pixels, report));
 }
 
-}  // namespace mica
+}  // namespace mica::host

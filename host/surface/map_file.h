@@ -4,7 +4,7 @@
 #include "host/surface/map_pixels.h"
 #include "host/surface/surface.h"
 
-namespace mica {
+namespace mica::host {
 
 /// Reads a map file and turns its texels into normals. What was assumed, repaired or lost goes to the report.
 ///  - `unorm`, `signed`: 3 channels are a normal, normalised here; 2 channels are (n_x, n_y), and n_z >= 0
@@ -21,4 +21,4 @@ Surface load_map(const MapFile& file, Interpolation interpolation, SurfaceReport
 std::vector<Eigen::Vector2d> decode_normals(const MapFile& file, const MapPixels& pixels,
                                             SurfaceReport& report);
 
-}  // namespace mica
+}  // namespace mica::host

@@ -7,10 +7,10 @@
 #include <exception>
 #include <memory>
 
-#include "host/base/error.h"
 #include "host/surface/image_header.h"
+#include "mica/error.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 /// What the reader said, on one line.
@@ -118,4 +118,4 @@ MapPixels read_map_pixels(const std::string& path, SurfaceReport& report) {
   }
 }
 
-}  // namespace mica
+}  // namespace mica::host

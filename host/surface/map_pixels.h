@@ -5,7 +5,7 @@
 
 #include "host/surface/surface.h"
 
-namespace mica {
+namespace mica::host {
 
 /// The pixels of a map file as they are stored: no colour conversion, no division by alpha.
 struct MapPixels {
@@ -29,4 +29,4 @@ struct MapPixels {
 /// too large.
 MapPixels read_map_pixels(const std::string& path, SurfaceReport& report);
 
-}  // namespace mica
+}  // namespace mica::host

@@ -4,10 +4,10 @@
 
 #include <memory>
 
-#include "host/base/error.h"
 #include "host/surface/image_header.h"
+#include "mica/error.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 MapSize size_of(const MapFile& file) {
@@ -34,4 +34,4 @@ MapSize map_size(const SurfaceDescription& description) {
   return std::visit([](const auto& source) { return size_of(source); }, description.source);
 }
 
-}  // namespace mica
+}  // namespace mica::host

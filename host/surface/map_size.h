@@ -2,7 +2,7 @@
 
 #include "host/surface/description.h"
 
-namespace mica {
+namespace mica::host {
 
 struct MapSize {
   int width = 0, height = 0;  ///< texels
@@ -12,4 +12,4 @@ struct MapSize {
 /// FileError.
 MapSize map_size(const SurfaceDescription& description);
 
-}  // namespace mica
+}  // namespace mica::host

@@ -9,7 +9,7 @@
 
 #include "host/surface/random.h"
 
-namespace mica::synthesis {
+namespace mica::host::synthesis {
 namespace {
 
 enum DartStream : std::uint64_t { dart_order_stream, dart_stream };  // dart_stream + 2 * round: x, + 1: y
@@ -107,4 +107,4 @@ std::uint32_t PoissonDisk::nearest(const Eigen::Vector2d& position) const {
   return best;
 }
 
-}  // namespace mica::synthesis
+}  // namespace mica::host::synthesis

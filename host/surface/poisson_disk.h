@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace mica::synthesis {
+namespace mica::host::synthesis {
 
 /// Points on a square torus, no two closer than a minimum distance, thrown until hardly any more fit.
 class PoissonDisk {
@@ -32,4 +32,4 @@ class PoissonDisk {
   std::vector<Eigen::Vector2d> points_;
 };
 
-}  // namespace mica::synthesis
+}  // namespace mica::host::synthesis

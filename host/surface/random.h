@@ -4,7 +4,7 @@
 
 /// Counter-based random numbers: a pure function of what they are for, so that results depend neither on the
 /// order in which they are drawn nor on the number of threads nor on the standard library.
-namespace mica::synthesis {
+namespace mica::host::synthesis {
 
 /// The output function of SplitMix64 [Steele, Lea, Flood 2014].
 inline std::uint64_t mix(std::uint64_t x) {
@@ -24,4 +24,4 @@ inline double random_unit(std::uint64_t seed, std::uint64_t stream, std::uint64_
   return static_cast<double>(random_bits(seed, stream, index) >> 11) * 0x1p-53;
 }
 
-}  // namespace mica::synthesis
+}  // namespace mica::host::synthesis

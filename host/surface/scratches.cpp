@@ -9,7 +9,7 @@
 #include "host/surface/settings.h"
 #include "host/surface/synthesis.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 enum ScratchStream : std::uint64_t {
@@ -111,4 +111,4 @@ std::vector<Eigen::Vector2d> synthesise_scratches(const ScratchesSurface& scratc
   return synthesis::normals_of_features(scratches.resolution, placed);
 }
 
-}  // namespace mica
+}  // namespace mica::host

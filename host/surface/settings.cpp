@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include "host/base/error.h"
+#include "mica/error.h"
 
-namespace mica::synthesis {
+namespace mica::host::synthesis {
 
 void check_setting(const char* kind, const char* setting, double value, double low, double high) {
   if (!(value >= low && value <= high)) {
@@ -18,4 +18,4 @@ void check_resolution(const char* kind, int resolution) {
   }
 }
 
-}  // namespace mica::synthesis
+}  // namespace mica::host::synthesis

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace mica::synthesis {
+namespace mica::host::synthesis {
 
 /// Throws UsageError unless `value` is in [low, high], which NaN is not. @param kind "scratches"; @param
 /// setting "width in texels".
@@ -9,4 +9,4 @@ void check_setting(const char* kind, const char* setting, double value, double l
 /// Throws UsageError unless a map of `resolution` texels a side can be made.
 void check_resolution(const char* kind, int resolution);
 
-}  // namespace mica::synthesis
+}  // namespace mica::host::synthesis

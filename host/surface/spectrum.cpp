@@ -1,11 +1,11 @@
 #include <fmt/format.h>
 
-#include "host/base/error.h"
 #include "host/surface/gaussian_heightfield.h"
 #include "host/surface/settings.h"
 #include "host/surface/synthesis.h"
+#include "mica/error.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 void check(const SpectrumSurface& spectrum) {
@@ -38,4 +38,4 @@ std::vector<Eigen::Vector2d> synthesise_spectrum(const SpectrumSurface& spectrum
                                          squared * Eigen::Matrix2d::Identity(), spectrum.seed);
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -4,11 +4,11 @@
 
 #include <utility>
 
-#include "host/base/error.h"
 #include "host/surface/map_file.h"
 #include "host/surface/synthesis.h"
+#include "mica/error.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 /// Makes a surface of whichever source the description holds.
@@ -81,4 +81,4 @@ Surface make_surface(const SurfaceDescription& description, SurfaceReport* repor
   return std::visit(SurfaceMaker(description.interpolation, report ? *report : unread), description.source);
 }
 
-}  // namespace mica
+}  // namespace mica::host

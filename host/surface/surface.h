@@ -6,7 +6,7 @@
 
 #include "host/surface/description.h"
 
-namespace mica {
+namespace mica::host {
 
 /// A normal map on the unit disk, periodic, in texel space.
 ///
@@ -53,4 +53,4 @@ struct SurfaceReport {
 /// that does not fit the file).
 Surface make_surface(const SurfaceDescription& description, SurfaceReport* report);
 
-}  // namespace mica
+}  // namespace mica::host

@@ -8,7 +8,7 @@
 #include "host/surface/extent.h"
 #include "host/surface/surface.h"
 
-namespace mica {
+namespace mica::host {
 
 /// Normals of a periodic Gaussian heightfield [Yan14 sec. 6, snail]; resolution^2, row v near 0 first.
 ///
@@ -104,4 +104,4 @@ double wave_height_variance(double wind_speed);
 /// throws.
 Surface synthesise_layers(const LayersSurface& layers, Interpolation interpolation, SurfaceReport& report);
 
-}  // namespace mica
+}  // namespace mica::host

@@ -6,7 +6,7 @@
 #include "host/surface/settings.h"
 #include "host/surface/synthesis.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 // Pierson and Moskowitz, "A proposed spectral form for fully developed wind seas", J. Geophys. Res. 69(24),
@@ -90,4 +90,4 @@ std::vector<Eigen::Vector2d> synthesise_waves(const WavesSurface& waves, Surface
   });
 }
 
-}  // namespace mica
+}  // namespace mica::host

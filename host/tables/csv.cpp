@@ -6,10 +6,10 @@
 #include <fstream>
 #include <string_view>
 
-#include "host/base/error.h"
 #include "host/tables/table.h"
+#include "mica/error.h"
 
-namespace mica::app {
+namespace mica::host::app {
 namespace {
 
 std::string_view trim(std::string_view text) {
@@ -122,4 +122,4 @@ Table read_csv(const std::string& path, const std::vector<std::string>& names, s
   return CsvReader(path, names, required).read();
 }
 
-}  // namespace mica::app
+}  // namespace mica::host::app

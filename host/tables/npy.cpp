@@ -8,12 +8,12 @@
 #include <filesystem>
 #include <fstream>
 
-#include "host/base/error.h"
 #include "host/tables/table.h"
+#include "mica/error.h"
 
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__);
 
-namespace mica::app {
+namespace mica::host::app {
 namespace {
 
 constexpr char kMagic[] = "\x93NUMPY";
@@ -220,4 +220,4 @@ std::string to_npy(const std::vector<float>& values, std::size_t columns) {
   return bytes;
 }
 
-}  // namespace mica::app
+}  // namespace mica::host::app

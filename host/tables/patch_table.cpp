@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include "host/base/error.h"
 #include "host/surface/random.h"
 #include "host/tables/query_table.h"
+#include "mica/error.h"
 
-namespace mica::app {
+namespace mica::host::app {
 namespace {
 
 constexpr std::size_t kView = 5, kLight = 8;  // columns
@@ -68,4 +68,4 @@ void PatchTable::check(const std::function<std::string(const ViewQuery&)>& view_
   });
 }
 
-}  // namespace mica::app
+}  // namespace mica::host::app

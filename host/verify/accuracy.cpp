@@ -7,7 +7,7 @@
 #include "host/surface/interpolate.h"
 #include "host/surface/random.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 /// Random numbers of one probe.
@@ -143,4 +143,4 @@ Accuracy compare(Evaluator* evaluator, const References& references,
   return accuracy;
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -10,7 +10,7 @@
 #include "host/reference/oracle.h"
 #include "host/surface/surface.h"
 
-namespace mica {
+namespace mica::host {
 
 /// What evaluators promise: |D - ref| <= relative_bound * ref + kPeakBound * peak, where peak is the largest
 /// reference of the footprint over its half vectors.
@@ -55,4 +55,4 @@ Accuracy compare(Evaluator* evaluator, const References& references,
                  const std::function<Promise(double roughness)>& promise, const Surface& surface,
                  std::vector<std::vector<Query>> probes);
 
-}  // namespace mica
+}  // namespace mica::host

@@ -11,7 +11,7 @@
 #include "host/reference/glint_draws.h"
 #include "host/surface/random.h"
 
-namespace mica::app {
+namespace mica::host::app {
 namespace {
 
 constexpr double kRelativeBound = 1e-4, kSmoothBound = 1e-6;
@@ -97,4 +97,4 @@ std::vector<Check> check_grid(Device* device) {
   return checks;
 }
 
-}  // namespace mica::app
+}  // namespace mica::host::app

@@ -7,7 +7,7 @@
 #include "host/surface/random.h"
 #include "host/verify/accuracy.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -278,4 +278,4 @@ std::vector<Query> probe_of(const HardCase& hard_case, const Surface& surface, s
   return queries;
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -9,7 +9,7 @@
 #include "host/device/device.h"
 #include "host/surface/surface.h"
 
-namespace mica {
+namespace mica::host {
 
 /// A kind of question that breaks evaluators.
 struct HardCase {
@@ -29,4 +29,4 @@ const std::vector<HardCase>& hard_cases();
 std::vector<Query> probe_of(const HardCase& hard_case, const Surface& surface, std::uint64_t n,
                             int half_vectors);
 
-}  // namespace mica
+}  // namespace mica::host

@@ -5,12 +5,12 @@
 #include <cmath>
 
 #include "host/base/constants.h"
-#include "host/base/error.h"
 #include "host/methods/make_patch_brdf.h"
 #include "host/surface/random.h"
 #include "host/verify/accuracy.h"
+#include "mica/error.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 double random_number(std::uint64_t n, std::uint64_t stream) {
@@ -162,4 +162,4 @@ std::vector<HardResult> run_hard_directions(const HardDirections& directions, De
   return results;
 }
 
-}  // namespace mica
+}  // namespace mica::host

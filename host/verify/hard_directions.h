@@ -6,7 +6,7 @@
 
 #include "host/verify/run_hard_case.h"
 
-namespace mica {
+namespace mica::host {
 
 /// Directions that break BRDFs. Both are unit, or would be but for rounding.
 struct HardDirections {
@@ -23,4 +23,4 @@ const std::vector<HardDirections>& hard_directions();
 /// @param queries of each kind, surface and BRDF.
 std::vector<HardResult> run_hard_directions(const HardDirections& directions, Device& device, int queries);
 
-}  // namespace mica
+}  // namespace mica::host

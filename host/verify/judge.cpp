@@ -14,7 +14,7 @@
 #include "host/reference/glint_grid.h"
 #include "host/verify/accuracy.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 /// Of the footprint's brightest: what culling drops of a mixture, twice its cutoff, and rounding.
@@ -291,4 +291,4 @@ std::unique_ptr<Judge> make_grid_judge(const GlintGrid& grid) {
   return std::make_unique<GridJudge>(grid);
 }
 
-}  // namespace mica
+}  // namespace mica::host

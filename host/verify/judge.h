@@ -9,7 +9,7 @@
 #include "host/reference/oracle.h"
 #include "host/surface/surface.h"
 
-namespace mica {
+namespace mica::host {
 
 /// How an evaluator did against its reference in double precision.
 struct Verdict {
@@ -37,4 +37,4 @@ std::unique_ptr<Judge> make_judge(const std::string& evaluator, const Surface& s
 
 std::unique_ptr<Judge> make_grid_judge(const GlintGrid& grid);
 
-}  // namespace mica
+}  // namespace mica::host

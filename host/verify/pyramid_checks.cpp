@@ -9,7 +9,7 @@
 #include "host/reference/oracle.h"
 #include "host/verify/accuracy.h"
 
-namespace mica::app {
+namespace mica::host::app {
 namespace {
 
 constexpr double kAllowed = 0.01;  // relative L2
@@ -72,4 +72,4 @@ std::vector<Check> check_pyramid(Device* device) {
           check_image(&pyramid, device, surface, 8, 0.005)};
 }
 
-}  // namespace mica::app
+}  // namespace mica::host::app

@@ -9,14 +9,14 @@
 #include <limits>
 #include <optional>
 
-#include "host/base/error.h"
 #include "host/methods/grid/grid_evaluator.h"
 #include "host/methods/make_evaluator.h"
 #include "host/methods/map/map_query.h"
 #include "host/verify/accuracy.h"
 #include "host/verify/judge.h"
+#include "mica/error.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 constexpr int kHalfVectors = 8;
@@ -204,4 +204,4 @@ HardResult run_trial(const HardCase& hard_case, const Surface& surface, Evaluato
   return Trial(hard_case, surface, effort, problem).run(evaluator, judge);
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -7,7 +7,7 @@
 #include "host/verify/hard_cases.h"
 #include "host/verify/judge.h"
 
-namespace mica {
+namespace mica::host {
 
 /// What an evaluator may do with a hard case, and what it may not.
 enum class Outcome {
@@ -46,4 +46,4 @@ std::vector<HardResult> run_hard_case(const HardCase& hard_case, Device& device,
 HardResult run_trial(const HardCase& hard_case, const Surface& surface, Evaluator* evaluator,
                      const Judge& judge, const HardEffort& effort);
 
-}  // namespace mica
+}  // namespace mica::host

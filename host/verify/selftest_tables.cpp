@@ -7,7 +7,7 @@
 #include "host/app/interrupt.h"
 #include "host/verify/hard_directions.h"
 
-namespace mica::app {
+namespace mica::host::app {
 namespace {
 
 std::string ulp_text(double ulp) {
@@ -117,4 +117,4 @@ nlohmann::json hard_cases_json(const std::vector<HardResult>& results) {
   return list;
 }
 
-}  // namespace mica::app
+}  // namespace mica::host::app

@@ -8,7 +8,7 @@
 #include "host/verify/arithmetic.h"
 #include "host/verify/run_hard_case.h"
 
-namespace mica::app {
+namespace mica::host::app {
 
 void print_arithmetic(const std::vector<FunctionError>& errors);
 nlohmann::json arithmetic_json(const std::vector<FunctionError>& errors);
@@ -18,4 +18,4 @@ nlohmann::json arithmetic_json(const std::vector<FunctionError>& errors);
 std::vector<HardResult> print_hard_cases(Device* device, std::uint64_t evaluations);
 nlohmann::json hard_cases_json(const std::vector<HardResult>& results);
 
-}  // namespace mica::app
+}  // namespace mica::host::app

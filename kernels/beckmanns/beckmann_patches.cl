@@ -1,11 +1,11 @@
-// What the BRDF of a patch is made of, [Che18] Eq. 7, on a mixture of Beckmann lobes: the density D_P of its half vector,
-// as beckmanns.cl has it, the areas I(o), I(i) that view and light see of its microsurface, [Che18] Eqs. 11-13, and the
-// projected area of its mean normal: Eq. 17, but for its clamps, with which a patch of slopes without a mean would not have
-// the cosine's.
+// What the BRDF of a patch is made of, [Che18] Eq. 7, on a mixture of Beckmann lobes: the density D_P of its
+// half vector, as beckmanns.cl has it, the areas I(o), I(i) that view and light see of its microsurface,
+// [Che18] Eqs. 11-13, and the projected area of its mean normal: Eq. 17, but for its clamps, with which a
+// patch of slopes without a mean would not have the cosine's.
 //
-// I is linear in the mean slope, o_z - p.o_xy, but for the lobes that lie close to edge-on or face away. So the mean comes
-// from the pyramid of slopes, and only those lobes are visited besides; all of them where the footprint is too small for the
-// pyramid, or seen so flat that the sum would be a small difference.
+// I is linear in the mean slope, o_z - p.o_xy, but for the lobes that lie close to edge-on or face away. So
+// the mean comes from the pyramid of slopes, and only those lobes are visited besides; all of them where the
+// footprint is too small for the pyramid, or seen so flat that the sum would be a small difference.
 
 // 1: I is that of one lobe with the moments of the footprint's slopes, [Che18] sec. 4.2.2; 2: of every lobe.
 #ifndef MICA_MASKING
@@ -17,8 +17,8 @@
 
 #include "beckmanns/footprint_slopes.h"
 #include "beckmanns/lobe_sum.h"
-#include "types.h"
 #include "beckmanns/visible_area.h"
+#include "types.h"
 #include "wave/wave.h"
 
 // Least o_z - p.o_xy of the mean slope p at which most lobes are left out.
@@ -40,12 +40,14 @@ typedef struct {
 } leaf_results;
 
 // Lanes of the children with lobes that do not face direction (o_x, o_y, o_z) as a whole.
-static inline wave_int turn_away(global const mica_lobe_query* query, const private lobe_children* c, float o_x, float o_y,
-                                 float o_z) {
+static inline wave_int turn_away(global const mica_lobe_query* query, const private lobe_children* c,
+                                 float o_x, float o_y, float o_z) {
   const private oriented_boxes* b = &c->boxes;
   const wave_float o_1 = fma(b->axis_x, o_x, b->axis_y * o_y), o_2 = fma(b->axis_x, o_y, -(b->axis_y * o_x));
-  const wave_float along_min = min(o_1 * b->along_min, o_1 * b->along_max) + min(o_2 * b->across_min, o_2 * b->across_max);
-  const wave_float along_max = max(o_1 * b->along_min, o_1 * b->along_max) + max(o_2 * b->across_min, o_2 * b->across_max);
+  const wave_float along_min =
+      min(o_1 * b->along_min, o_1 * b->along_max) + min(o_2 * b->across_min, o_2 * b->across_max);
+  const wave_float along_max =
+      max(o_1 * b->along_min, o_1 * b->along_max) + max(o_2 * b->across_min, o_2 * b->across_max);
   const wave_float along = max(fabs(along_min), fabs(along_max));
   // o^T C o + sigma_r^2 |B o|^2 at most
   const wave_float stretch = c->w * fma((1.0f + c->w) * along, along, fma(o_x, o_x, o_y * o_y));
@@ -58,8 +60,8 @@ static inline wave_int turn_away(global const mica_lobe_query* query, const priv
 }
 
 // Bits of the children that matter to the density, and in the high half of those that matter to the areas.
-static inline uint surviving_lobes(global const mica_patch_query* query, int all, global const short* node, int i, int j,
-                                   int child_size, WAVE_SHARED int* scratch) {
+static inline uint surviving_lobes(global const mica_patch_query* query, int all, global const short* node,
+                                   int i, int j, int child_size, WAVE_SHARED int* scratch) {
   lobe_children c;
   load_children(&query->lobe, node, i, j, child_size, &c);
   const wave_int near = c.boxes.present & wave_mask(c.q_position <= query->lobe.map.cutoff);
@@ -68,16 +70,15 @@ static inline uint surviving_lobes(global const mica_patch_query* query, int all
   if (all) {
     turned = wave_ballot(near, scratch);
   } else if (MICA_MASKING == 2) {
-    turned =
-        wave_ballot(near & (turn_away(&query->lobe, &c, query->view_x, query->view_y, query->view_z) |
-                            turn_away(&query->lobe, &c, query->light_x, query->light_y, query->light_z)),
-                    scratch);
+    turned = wave_ballot(near & (turn_away(&query->lobe, &c, query->view_x, query->view_y, query->view_z) |
+                                 turn_away(&query->lobe, &c, query->light_x, query->light_y, query->light_z)),
+                         scratch);
   }
   return dense | turned << 16;
 }
 
-static inline void view_lobes(const private lobe_leaf* lobes, float roughness, float o_x, float o_y, float o_z,
-                              private lobe_view* view) {
+static inline void view_lobes(const private lobe_leaf* lobes, float roughness, float o_x, float o_y,
+                              float o_z, private lobe_view* view) {
   const wave_float p_x = lobes->base_x + lobes->offset_x, p_y = lobes->base_y + lobes->offset_y;
   const wave_float along = fma(p_x, o_x, p_y * o_y);
   view->facing = o_z - along;
@@ -110,8 +111,9 @@ static inline void add_areas(private leaf_results* results) {
 }
 
 // @param reasons why the leaf is visited: bit 0 for its density, bit 16 for its areas.
-static inline void take_lobes(global const mica_patch_query* query, global const short* leaves, int leaf, uint reasons, int i,
-                              int j, int room_i, int room_j, private leaf_results* results) {
+static inline void take_lobes(global const mica_patch_query* query, global const short* leaves, int leaf,
+                              uint reasons, int i, int j, int room_i, int room_j,
+                              private leaf_results* results) {
   lobe_leaf lobes;
   load_lobes(leaves + leaf * MICA_LOBE_LEAF, query->lobe.map.inverse_roughness, &lobes);
   const wave_float q_position = lobe_positions(&query->lobe.map, i, j, room_i, room_j);
@@ -139,7 +141,8 @@ static inline void take_lobes(global const mica_patch_query* query, global const
 // For the density alone, which is all that is left to do once the pyramid has said the areas.
 #define LEAF_WALK walk_dense_leaves
 #define LEAF_RESULTS lobe_sum
-#define LEAF_SURVIVORS(query, node, i, j, child_size, scratch) dense_lobes(&(query)->lobe, node, i, j, child_size, scratch)
+#define LEAF_SURVIVORS(query, node, i, j, child_size, scratch) \
+  dense_lobes(&(query)->lobe, node, i, j, child_size, scratch)
 #define LEAF_TAKE(query, lobes, at, i, j, room_i, room_j, results, scratch) \
   sum_lobes(&(query)->lobe, lobes, at, i, j, room_i, room_j, results)
 #include "map/walk_leaves.h"
@@ -163,10 +166,11 @@ static inline float lobe_area(slope_lobe lobe, float o_x, float o_y, float o_z) 
 #endif
 }
 
-// D, I(view), I(light) and the light's projected area of every query, in the order of their slots. Global size: queries (vectors), or 16 a query
-// (items).
-kernel void beckmann_patches(global const mica_patch_query* restrict queries, int query_count, mica_map_grid grid,
-                             global const short* restrict lobes, global const short* restrict block_nodes,
+// D, I(view), I(light) and the light's projected area of every query, in the order of their slots. Global
+// size: queries (vectors), or 16 a query (items).
+kernel void beckmann_patches(global const mica_patch_query* restrict queries, int query_count,
+                             mica_map_grid grid, global const short* restrict lobes,
+                             global const short* restrict block_nodes,
                              global const short* restrict tile_nodes, global const short* restrict pyramid,
                              global float* restrict answers) {
   WAVE_DECLARE_SCRATCH(scratch);

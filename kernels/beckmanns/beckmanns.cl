@@ -1,8 +1,9 @@
 // `beckmanns`: the P-NDF of a footprint on a mixture of non-centred anisotropic Beckmann lobes. [Che18] Eq. 9
 //
-// An element stands for a square of the map: a lobe of the slopes under its round position kernel, and the weight
-// W = N(c - m; F), c its centre, m and F the footprint's mean and what of its covariance the kernels leave to be added.
-// One wave a query; leaves of 4x4 elements survive the walk and are summed sixteen at a time, without a branch.
+// An element stands for a square of the map: a lobe of the slopes under its round position kernel, and the
+// weight W = N(c - m; F), c its centre, m and F the footprint's mean and what of its covariance the kernels
+// leave to be added. One wave a query; leaves of 4x4 elements survive the walk and are summed sixteen at a
+// time, without a branch.
 
 #include "beckmanns/lobe_sum.h"
 #include "types.h"
@@ -29,5 +30,6 @@ kernel void beckmanns(global const mica_lobe_query* restrict queries, int query_
   lobe_sum results;
   begin_lobes(&results);
   walk_leaves(query, grid, lobes, block_nodes, tile_nodes, &results, scratch);
-  density[query->map.slot] = (MICA_COUNT_ELEMENTS ? 1.0f : query->map.scale) * end_lobes(query, &results, scratch);
+  density[query->map.slot] =
+      (MICA_COUNT_ELEMENTS ? 1.0f : query->map.scale) * end_lobes(query, &results, scratch);
 }

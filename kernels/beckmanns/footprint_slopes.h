@@ -1,11 +1,11 @@
-// The Gaussian lobe that has the mean and the covariance of the slopes under a footprint, from the pyramid of slopes.
-// [Che18] sec. 4.2.2
+// The Gaussian lobe that has the mean and the covariance of the slopes under a footprint, from the pyramid of
+// slopes. [Che18] sec. 4.2.2
 #ifndef MICA_FOOTPRINT_SLOPES_H
 #define MICA_FOOTPRINT_SLOPES_H
 
-#include "wave/gaussian.h"
 #include "map/map_cull.h"
 #include "types.h"
+#include "wave/gaussian.h"
 #include "wave/wave.h"
 
 // Standard deviations of the cells' weights within which cells count.
@@ -25,7 +25,8 @@ typedef struct {
 static inline void add_cells(global const mica_slope_footprint* at, global const short* pyramid, int i, int j,
                              private slope_sums* sums) {
   const int row = at->width + MICA_SLOPE_APRON, plane = row * (at->height + MICA_SLOPE_APRON);
-  const int inside_i = i - floor_divide(i, at->width) * at->width, inside_j = j - floor_divide(j, at->height) * at->height;
+  const int inside_i = i - floor_divide(i, at->width) * at->width,
+            inside_j = j - floor_divide(j, at->height) * at->height;
   global const short* cell = pyramid + at->offset + inside_j * row + inside_i;
   const wave_float mean_x = at->mean_unit * wave_to_float(wave_load_short_4x4(cell, row));
   const wave_float mean_y = at->mean_unit * wave_to_float(wave_load_short_4x4(cell + plane, row));
@@ -78,8 +79,8 @@ static inline wave_float hermite_weight(wave_int n) {
   return wave_select(inner, outer, wave_mask(n >= 2));
 }
 
-// Adds what a roughness on the disk, 1 / inverse_roughness, spreads the lobe's slopes by: the mean of B B^T over them, which
-// is exact for a Gaussian: B B^T is a polynomial of degree six. See lobe.h.
+// Adds what a roughness on the disk, 1 / inverse_roughness, spreads the lobe's slopes by: the mean of B B^T
+// over them, which is exact for a Gaussian: B B^T is a polynomial of degree six. See lobe.h.
 static inline slope_lobe with_roughness(slope_lobe lobe, float inverse_roughness, WAVE_SHARED int* scratch) {
   const float a = sqrt(max(lobe.xx, 1e-20f)), b = lobe.xy / a, c = sqrt(max(fma(-b, b, lobe.yy), 0.0f));
   const wave_float x = hermite_node(WAVE_LANE & 3), y = hermite_node(WAVE_LANE >> 2);

@@ -13,7 +13,8 @@ typedef struct {
   wave_float q_position;  // whitened squared distance of their centres, at least
 } lobe_children;
 
-// The node's lower left corner is (i, j) elements from the footprint's whole mean; centres lie half an element inside.
+// The node's lower left corner is (i, j) elements from the footprint's whole mean; centres lie half an
+// element inside.
 static inline void load_children(global const mica_lobe_query* query, global const short* node, int i, int j,
                                  int child_size, private lobe_children* children) {
   global const mica_map_query* place = &query->map;
@@ -26,10 +27,12 @@ static inline void load_children(global const mica_lobe_query* query, global con
   children->q_position = footprint_bound(place, x, y, child_size - 1.0f);
 }
 
-// Lanes of the children that reach the cutoff. A lobe's covariance is C + sigma_r^2 B^2, and |B d|^2 <= w^3 |d|^2.
-static inline wave_int matter_to_density(global const mica_lobe_query* query, const private lobe_children* c) {
-  return reach_cutoff(&c->boxes, query->slope_x, query->slope_y, query->map.inverse_roughness, query->spread_variance,
-                      c->w * c->w * c->w, c->q_position, query->map.cutoff);
+// Lanes of the children that reach the cutoff. A lobe's covariance is C + sigma_r^2 B^2, and |B d|^2 <= w^3
+// |d|^2.
+static inline wave_int matter_to_density(global const mica_lobe_query* query,
+                                         const private lobe_children* c) {
+  return reach_cutoff(&c->boxes, query->slope_x, query->slope_y, query->map.inverse_roughness,
+                      query->spread_variance, c->w * c->w * c->w, c->q_position, query->map.cutoff);
 }
 
 #endif  // MICA_LOBE_BOUND_H

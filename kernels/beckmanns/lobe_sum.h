@@ -40,14 +40,17 @@ static inline void begin_lobes(private lobe_sum* results) {
 }
 
 // The three steps, each of another leaf.
-static inline void advance_lobes(global const mica_lobe_query* query, private lobe_sum* results, private const lobe_wave* next) {
+static inline void advance_lobes(global const mica_lobe_query* query, private lobe_sum* results,
+                                 private const lobe_wave* next) {
   results->sum = fma(results->weight, slice_density(&results->sliced), results->sum);
   slice_lobes(query, &results->met, &results->sliced, &results->weight);
   results->met = *next;
 }
 
-// Adds leaves that are still under way. Sum over all lanes, without the query's scale; or how many elements there were.
-static inline float end_lobes(global const mica_lobe_query* query, private lobe_sum* results, WAVE_SHARED int* scratch) {
+// Adds leaves that are still under way. Sum over all lanes, without the query's scale; or how many elements
+// there were.
+static inline float end_lobes(global const mica_lobe_query* query, private lobe_sum* results,
+                              WAVE_SHARED int* scratch) {
   const lobe_wave last = results->met;
   for (int step = 0; step < 2; ++step) advance_lobes(query, results, &last);
   const float sum = wave_sum(results->sum, scratch);
@@ -56,8 +59,8 @@ static inline float end_lobes(global const mica_lobe_query* query, private lobe_
 }
 
 // Adds a leaf; `lobes` has its spreads in roughnesses.
-static inline void add_lobes(global const mica_lobe_query* query, const private lobe_leaf* lobes, wave_float q_position,
-                             private lobe_sum* results) {
+static inline void add_lobes(global const mica_lobe_query* query, const private lobe_leaf* lobes,
+                             wave_float q_position, private lobe_sum* results) {
   lobe_wave next;
   meet_lobes(query, lobes, q_position, &next);
   advance_lobes(query, results, &next);
@@ -65,8 +68,8 @@ static inline void add_lobes(global const mica_lobe_query* query, const private 
 }
 
 // Adds leaf number `leaf`, whose first element lies (i, j) elements from the mean.
-static inline void sum_lobes(global const mica_lobe_query* query, global const short* leaves, int leaf, int i, int j,
-                             int room_i, int room_j, private lobe_sum* results) {
+static inline void sum_lobes(global const mica_lobe_query* query, global const short* leaves, int leaf, int i,
+                             int j, int room_i, int room_j, private lobe_sum* results) {
   lobe_leaf lobes;
   load_lobes(leaves + leaf * MICA_LOBE_LEAF, query->map.inverse_roughness, &lobes);
   add_lobes(query, &lobes, lobe_positions(&query->map, i, j, room_i, room_j), results);

@@ -1,10 +1,12 @@
-// Directions into which a footprint's V-shaped cavities send the light of a view: Algorithm 1 of [Che19], for the seed that
-// the host chose by its weight. One query a work-item (vectors) or sixteen (items), of which the first one works.
+// Directions into which a footprint's V-shaped cavities send the light of a view: Algorithm 1 of [Che19], for
+// the seed that the host chose by its weight. One query a work-item (vectors) or sixteen (items), of which
+// the first one works.
 
 #include "cavities/cavity_seeds.h"
 #include "wave/random_numbers.h"
 
-// What light does that one bounce does not let go: 0: it leaves in all directions; 1: it leaves about the mirror image in g.
+// What light does that one bounce does not let go: 0: it leaves in all directions; 1: it leaves about the
+// mirror image in g.
 #ifndef MICA_COMPENSATION
 #define MICA_COMPENSATION 0
 #endif
@@ -24,10 +26,12 @@ static inline float2 draw_normal(global const mica_cavity_query* query, uint dim
 }
 
 // The seed's normal on the disk.
-static inline float2 seed_normal(global const mica_cavity_query* query, mica_map_grid grid, global const int* normals) {
+static inline float2 seed_normal(global const mica_cavity_query* query, mica_map_grid grid,
+                                 global const int* normals) {
   const int texel_i = query->seed_i / MICA_SEEDS, texel_j = query->seed_j / MICA_SEEDS;
   const int block = texel_j / MICA_BLOCK * grid.blocks_x + texel_i / MICA_BLOCK;
-  const int at = block * MICA_BLOCK_STRIDE + (texel_j % MICA_BLOCK + 1) * MICA_BLOCK_ROW + texel_i % MICA_BLOCK + 1;
+  const int at =
+      block * MICA_BLOCK_STRIDE + (texel_j % MICA_BLOCK + 1) * MICA_BLOCK_ROW + texel_i % MICA_BLOCK + 1;
   const int right = MICA_INTERPOLATION == 0 ? 0 : query->seed_i % MICA_SEEDS;
   const int up = MICA_INTERPOLATION == 0 ? 0 : query->seed_j % MICA_SEEDS * MICA_BLOCK_ROW;
   float2 sum = 0.0f;
@@ -58,7 +62,8 @@ static inline float3 draw_bounce(global const mica_cavity_query* query, float2 s
 
 static inline float3 draw_compensation(global const mica_cavity_query* query) {
 #if MICA_COMPENSATION == 0
-  const float squared_radius = draw(query, DRAW_COMPENSATION), turn = 2.0f * draw(query, DRAW_COMPENSATION + 1);
+  const float squared_radius = draw(query, DRAW_COMPENSATION),
+              turn = 2.0f * draw(query, DRAW_COMPENSATION + 1);
   const float radius = sqrt(squared_radius);
   return (float3)(radius * cospi(turn), radius * sinpi(turn), sqrt(1.0f - squared_radius));
 #else
@@ -73,8 +78,9 @@ static inline float3 draw_compensation(global const mica_cavity_query* query) {
 }
 
 // (x, y, z) of every query's light, in the order of their slots.
-kernel void cavity_draws(global const mica_cavity_query* restrict queries, int query_count, mica_map_grid grid,
-                         global const int* restrict normals, global float* restrict directions) {
+kernel void cavity_draws(global const mica_cavity_query* restrict queries, int query_count,
+                         mica_map_grid grid, global const int* restrict normals,
+                         global float* restrict directions) {
   if (WAVE_ITEM_INDEX >= query_count) return;
 #if MICA_WAVE_ITEMS
   if (WAVE_LANE != 0) return;

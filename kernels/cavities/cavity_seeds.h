@@ -1,11 +1,13 @@
-// Included by kernels on a map of V-shaped cavities: the seeds of a leaf, MICA_SEEDS x MICA_SEEDS a texel. [Che19] Eq. 16
+// Included by kernels on a map of V-shaped cavities: the seeds of a leaf, MICA_SEEDS x MICA_SEEDS a texel.
+// [Che19] Eq. 16
 #ifndef MICA_CAVITY_SEEDS_H
 #define MICA_CAVITY_SEEDS_H
 
 #include "types.h"
 #include "wave/wave.h"
 
-// 0: constant texels, with seeds inside them; else seeds at the centres of texels and on the bilinear quads between them.
+// 0: constant texels, with seeds inside them; else seeds at the centres of texels and on the bilinear quads
+// between them.
 #ifndef MICA_INTERPOLATION
 #define MICA_INTERPOLATION 1
 #endif

@@ -1,16 +1,18 @@
-// `gaussians`: the P-NDF of a footprint on a mixture of 4D Gaussians in (position, normal), sliced in closed form. [Yan16]
+// `gaussians`: the P-NDF of a footprint on a mixture of 4D Gaussians in (position, normal), sliced in closed
+// form. [Yan16]
 //
-// An element stands for a square of the map, of side h = 1 / MICA_ELEMENTS texels: centre c, mean normal s0 and the
-// normal's Jacobian J there, and a round position kernel of variance k. Its share of D is
+// An element stands for a square of the map, of side h = 1 / MICA_ELEMENTS texels: centre c, mean normal s0
+// and the normal's Jacobian J there, and a round position kernel of variance k. Its share of D is
 //     h^2 N(c - m; F + k I) N(s - s0 - J A (m - c); sigma_r^2 I + J P J^T),   A = k (F + k I)^-1,   P = F A,
-// with m and F the footprint's mean and covariance: one exponent an element. s0 and J are not stored: four texels say them.
-// One wave a query; leaves of 4x4 texels survive the walk and are summed sixteen elements at a time, without a branch.
+// with m and F the footprint's mean and covariance: one exponent an element. s0 and J are not stored: four
+// texels say them. One wave a query; leaves of 4x4 texels survive the walk and are summed sixteen elements at
+// a time, without a branch.
 
 #include "map/map_cull.h"
 #include "map/oriented_bound.h"
 #include "map/quad_corners.h"
-#include "wave/slice.h"
 #include "types.h"
+#include "wave/slice.h"
 #include "wave/wave.h"
 
 // Elements a texel and axis.
@@ -25,35 +27,38 @@
 #endif
 
 // Bits of the children of `node` that reach the cutoff; centres lie half an element inside the children.
-static inline uint surviving_elements(global const mica_mixture_query* query, global const short* node, int i, int j,
-                                      int child_size, WAVE_SHARED int* scratch) {
+static inline uint surviving_elements(global const mica_mixture_query* query, global const short* node, int i,
+                                      int j, int child_size, WAVE_SHARED int* scratch) {
   global const mica_map_query* place = &query->map;
   oriented_boxes boxes;
   load_boxes(node, 1.0f, &boxes);
   const float to_bound = (float)MICA_BOUND_ONE / MICA_NORMAL_ONE;
-  const wave_float x = wave_to_float(i + (WAVE_LANE & 3) * child_size) - (place->mean_x - 0.5f * ELEMENT_SIZE);
-  const wave_float y = wave_to_float(j + (WAVE_LANE >> 2) * child_size) - (place->mean_y - 0.5f * ELEMENT_SIZE);
+  const wave_float x =
+      wave_to_float(i + (WAVE_LANE & 3) * child_size) - (place->mean_x - 0.5f * ELEMENT_SIZE);
+  const wave_float y =
+      wave_to_float(j + (WAVE_LANE >> 2) * child_size) - (place->mean_y - 0.5f * ELEMENT_SIZE);
   const wave_float q_position = footprint_bound(place, x, y, child_size - ELEMENT_SIZE), one = 1.0f;
   return wave_ballot(reach_cutoff(&boxes, place->half_s * to_bound, place->half_t * to_bound,
-                                  place->inverse_roughness / MICA_BOUND_ONE, query->spread_variance, one, q_position,
-                                  place->cutoff),
+                                  place->inverse_roughness / MICA_BOUND_ONE, query->spread_variance, one,
+                                  q_position, place->cutoff),
                      scratch);
 }
 
 // Sixteen elements, one of each quad of a leaf. Lengths are times EXP2_SCALE, so that exponents are of 2.
 typedef struct {
-  wave_float p1, p2;                    // centres less the footprint's mean, whitened
-  wave_float e_s, e_t;                  // the half vector less s0, in roughnesses
-  wave_float jx_s, jx_t, jy_s, jy_t;    // twice the columns of J a texel, in fixed point
+  wave_float p1, p2;                  // centres less the footprint's mean, whitened
+  wave_float e_s, e_t;                // the half vector less s0, in roughnesses
+  wave_float jx_s, jx_t, jy_s, jy_t;  // twice the columns of J a texel, in fixed point
 } element_wave;
 
 // What a query's slices have in common, and their sum.
 typedef struct {
-  float a1x, a1y, a2x, a2y;                  // a_i / tau_i
-  float pull_1x, pull_1y, pull_2x, pull_2y;  // k a_i / tau_i over the roughness, for twice a Jacobian in fixed point
-  float blur_1, blur_2;                      // the query's, for what has been pulled
+  float a1x, a1y, a2x, a2y;  // a_i / tau_i
+  float pull_1x, pull_1y, pull_2x,
+      pull_2y;           // k a_i / tau_i over the roughness, for twice a Jacobian in fixed point
+  float blur_1, blur_2;  // the query's, for what has been pulled
   float to_roughness;
-  wave_float lane_1, lane_2;                 // p1 and p2 of a lane's place in its leaf
+  wave_float lane_1, lane_2;  // p1 and p2 of a lane's place in its leaf
   int leaves;
   element_wave loaded;
   slice_wave sliced;
@@ -64,8 +69,10 @@ static inline void begin_slices(global const mica_mixture_query* query, private 
   results->a1x = EXP2_SCALE * query->axis_1x, results->a1y = EXP2_SCALE * query->axis_1y;
   results->a2x = EXP2_SCALE * query->axis_2x, results->a2y = EXP2_SCALE * query->axis_2y;
   const wave_float column = wave_to_float(WAVE_LANE & 3), row = wave_to_float(WAVE_LANE >> 2), zero = 0.0f;
-  results->lane_1 = fma(column, results->a1x, row * results->a1y), results->lane_2 = fma(column, results->a2x, row * results->a2y);
-  const float pull = query->kernel_variance * query->map.inverse_roughness, to_pull = 0.5f / MICA_NORMAL_ONE * pull;
+  results->lane_1 = fma(column, results->a1x, row * results->a1y),
+  results->lane_2 = fma(column, results->a2x, row * results->a2y);
+  const float pull = query->kernel_variance * query->map.inverse_roughness,
+              to_pull = 0.5f / MICA_NORMAL_ONE * pull;
   results->pull_1x = to_pull * query->axis_1x, results->pull_1y = to_pull * query->axis_1y;
   results->pull_2x = to_pull * query->axis_2x, results->pull_2y = to_pull * query->axis_2y;
   results->blur_1 = query->blur_1 / pull, results->blur_2 = query->blur_2 / pull;
@@ -77,15 +84,18 @@ static inline void begin_slices(global const mica_mixture_query* query, private 
   results->sum = zero;
 }
 
-static inline void slice_elements(private const leaf_results* by, private const element_wave* e, private slice_wave* slice) {
+static inline void slice_elements(private const leaf_results* by, private const element_wave* e,
+                                  private slice_wave* slice) {
   // J a_i / tau_i, pulled: times p_i what the residual s - s0 - J A (m - c) moves by, whose m - c is -p.
   const wave_float v1_s = fma(e->jx_s, by->pull_1x, e->jy_s * by->pull_1y);
   const wave_float v1_t = fma(e->jx_t, by->pull_1x, e->jy_t * by->pull_1y);
   const wave_float v2_s = fma(e->jx_s, by->pull_2x, e->jy_s * by->pull_2y);
   const wave_float v2_t = fma(e->jx_t, by->pull_2x, e->jy_t * by->pull_2y);
-  const wave_float r_s = fma(e->p1, v1_s, fma(e->p2, v2_s, e->e_s)), r_t = fma(e->p1, v1_t, fma(e->p2, v2_t, e->e_t));
+  const wave_float r_s = fma(e->p1, v1_s, fma(e->p2, v2_s, e->e_s)),
+                   r_t = fma(e->p1, v1_t, fma(e->p2, v2_t, e->e_t));
   // I + M M^T is the covariance in roughnesses; its determinant and its inverse's form, without cancellation.
-  const wave_float m1_s = by->blur_1 * v1_s, m1_t = by->blur_1 * v1_t, m2_s = by->blur_2 * v2_s, m2_t = by->blur_2 * v2_t;
+  const wave_float m1_s = by->blur_1 * v1_s, m1_t = by->blur_1 * v1_t, m2_s = by->blur_2 * v2_s,
+                   m2_t = by->blur_2 * v2_t;
   const wave_float det_m = fma(m1_s, m2_t, -(m1_t * m2_s));
   slice->det = fma(det_m, det_m, fma(m1_s, m1_s, fma(m1_t, m1_t, fma(m2_s, m2_s, fma(m2_t, m2_t, 1.0f)))));
   const wave_float cross_1 = fma(r_s, m1_t, -(r_t * m1_s)), cross_2 = fma(r_s, m2_t, -(r_t * m2_s));
@@ -101,13 +111,16 @@ static inline void advance(private leaf_results* results, private const element_
 }
 
 // The elements of a leaf whose lower left texel is stored at `at` and lies (i, j) texels from the mean.
-static inline void take_elements(global const mica_mixture_query* query, global const int* normals, int at, int i, int j,
-                                 int room_i, int room_j, private leaf_results* results) {
+static inline void take_elements(global const mica_mixture_query* query, global const int* normals, int at,
+                                 int i, int j, int room_i, int room_j, private leaf_results* results) {
   quad_corners c;
   load_corners(normals, at, &c);
-  // The bilinear patch s00 + x f + y g + (xy - x - y) f g. Differences of fixed-point numbers are exact: rounding begins here.
-  const wave_float x_s = wave_to_float(c.s10 - c.s00), y_s = wave_to_float(c.s01 - c.s00), xy_s = wave_to_float(c.s11 - c.s00);
-  const wave_float x_t = wave_to_float(c.t10 - c.t00), y_t = wave_to_float(c.t01 - c.t00), xy_t = wave_to_float(c.t11 - c.t00);
+  // The bilinear patch s00 + x f + y g + (xy - x - y) f g. Differences of fixed-point numbers are exact:
+  // rounding begins here.
+  const wave_float x_s = wave_to_float(c.s10 - c.s00), y_s = wave_to_float(c.s01 - c.s00),
+                   xy_s = wave_to_float(c.s11 - c.s00);
+  const wave_float x_t = wave_to_float(c.t10 - c.t00), y_t = wave_to_float(c.t01 - c.t00),
+                   xy_t = wave_to_float(c.t11 - c.t00);
   const float to_roughness = results->to_roughness;
   const wave_float e_s = to_roughness * wave_to_float(query->map.half_s - c.s00);
   const wave_float e_t = to_roughness * wave_to_float(query->map.half_t - c.t00);
@@ -115,7 +128,8 @@ static inline void take_elements(global const mica_mixture_query* query, global 
   wave_float lane_1 = results->lane_1;
   if (room_i < MICA_LEAF || room_j < MICA_LEAF) {
     const wave_float nowhere = NOWHERE;
-    lane_1 = wave_select(nowhere, lane_1, wave_mask((WAVE_LANE & 3) < room_i) & wave_mask((WAVE_LANE >> 2) < room_j));
+    lane_1 = wave_select(nowhere, lane_1,
+                         wave_mask((WAVE_LANE & 3) < room_i) & wave_mask((WAVE_LANE >> 2) < room_j));
   }
   ++results->leaves;
   element_wave next;
@@ -123,7 +137,8 @@ static inline void take_elements(global const mica_mixture_query* query, global 
   const wave_float turn_s = x_s - y_s, turn_t = x_t - y_t;
   next.p1 = lane_1 + fma(x + 0.5f, results->a1x, (y + 0.5f) * results->a1y);
   next.p2 = results->lane_2 + fma(x + 0.5f, results->a2x, (y + 0.5f) * results->a2y);
-  next.e_s = fma(-0.25f * to_roughness, x_s + y_s + xy_s, e_s), next.e_t = fma(-0.25f * to_roughness, x_t + y_t + xy_t, e_t);
+  next.e_s = fma(-0.25f * to_roughness, x_s + y_s + xy_s, e_s),
+  next.e_t = fma(-0.25f * to_roughness, x_t + y_t + xy_t, e_t);
   next.jx_s = xy_s + turn_s, next.jx_t = xy_t + turn_t, next.jy_s = xy_s - turn_s, next.jy_t = xy_t - turn_t;
   advance(results, &next);
 #else
@@ -134,7 +149,8 @@ static inline void take_elements(global const mica_mixture_query* query, global 
       next.p1 = lane_1 + fma(x + f, results->a1x, (y + g) * results->a1y);
       next.p2 = results->lane_2 + fma(x + f, results->a2x, (y + g) * results->a2y);
       const wave_float jx_s = fma(bend_s, g, x_s), jx_t = fma(bend_t, g, x_t);
-      next.e_s = fma(-to_roughness, fma(jx_s, f, y_s * g), e_s), next.e_t = fma(-to_roughness, fma(jx_t, f, y_t * g), e_t);
+      next.e_s = fma(-to_roughness, fma(jx_s, f, y_s * g), e_s),
+      next.e_t = fma(-to_roughness, fma(jx_t, f, y_t * g), e_t);
       next.jx_s = 2.0f * jx_s, next.jy_s = 2.0f * fma(bend_s, f, y_s);
       next.jx_t = 2.0f * jx_t, next.jy_t = 2.0f * fma(bend_t, f, y_t);
       advance(results, &next);

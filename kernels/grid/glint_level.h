@@ -2,10 +2,10 @@
 #ifndef MICA_GLINT_LEVEL_H
 #define MICA_GLINT_LEVEL_H
 
-#include "wave/gaussian.h"
 #include "grid/glint_hash.h"
 #include "grid/glint_maps.h"
 #include "types.h"
+#include "wave/gaussian.h"
 #include "wave/wave.h"
 
 // 1: processes of glints share the light, or leave out some of their glints (MICA_GLINT_PRESENCE).
@@ -28,8 +28,8 @@ static inline wave_float roulette(wave_float r, wave_float weight) {
   return x * x * fma(-2.0f, x, 3.0f);
 }
 
-// Whether a glint with the number r is there when a share of them is: as smooth as the roulette of levels, but
-// its mean over r is the share itself, so that processes which share the light lose none of it.
+// Whether a glint with the number r is there when a share of them is: as smooth as the roulette of levels,
+// but its mean over r is the share itself, so that processes which share the light lose none of it.
 static inline wave_float presence_of(wave_float r, wave_float share, wave_float inverse_width) {
   const wave_float x = min(max(fma(share - r, inverse_width, 0.5f), 0.0f), 1.0f);
   return x * x * fma(-2.0f, x, 3.0f);
@@ -38,15 +38,15 @@ static inline wave_float presence_of(wave_float r, wave_float share, wave_float 
 // A footprint and a direction on one level. Positions are relative to the lower left corner of the lowest of
 // the 2x2 cells around them, 0.5 to 1.5 cells away.
 typedef struct {
-  wave_uint spatial_keys[4];        // of the spatial cells, x first
-  wave_float x, y;                  // mean of the footprint
-  wave_float w1x, w1y, w2x, w2y;    // its whitening
-  wave_int k, l;                    // lowest angular cell
-  wave_float a, b;                  // direction
-  wave_float inverse_a, inverse_b;  // 1 / standard deviation of a lobe
-  wave_float cells;                 // angular cells a side of the unit square
-  wave_float center_a, center_b;    // direction less the centre of the disk, in cells
-  wave_float weight;                // of the level
+  wave_uint spatial_keys[4];                              // of the spatial cells, x first
+  wave_float x, y;                                        // mean of the footprint
+  wave_float w1x, w1y, w2x, w2y;                          // its whitening
+  wave_int k, l;                                          // lowest angular cell
+  wave_float a, b;                                        // direction
+  wave_float inverse_a, inverse_b;                        // 1 / standard deviation of a lobe
+  wave_float cells;                                       // angular cells a side of the unit square
+  wave_float center_a, center_b;                          // direction less the centre of the disk, in cells
+  wave_float weight;                                      // of the level
   wave_float share, presence, inverse_width, brightness;  // of the process, where MICA_GLINT_ROULETTE
 } glint_level;
 
@@ -172,7 +172,8 @@ typedef struct {
   wave_uint seed;
 } glint_place;
 
-static inline glint_place load_footprint(global const int* fields, int pitch, int first, private glint_level* g) {
+static inline glint_place load_footprint(global const int* fields, int pitch, int first,
+                                         private glint_level* g) {
   g->w1x = GLINT_FLOAT(MICA_GLINT_WHITEN_1X), g->w1y = GLINT_FLOAT(MICA_GLINT_WHITEN_1Y);
   g->w2x = GLINT_FLOAT(MICA_GLINT_WHITEN_2X), g->w2y = GLINT_FLOAT(MICA_GLINT_WHITEN_2Y);
   g->weight = GLINT_FLOAT(MICA_GLINT_WEIGHT);

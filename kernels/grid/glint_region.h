@@ -5,7 +5,8 @@
 #include "grid/glint_level.h"
 
 #define FLAT_LOBE 0.005f  // widths of a region over that of a lobe, below which the lobe is flat there
-#define LEAST_MASS 1e-5f  // a region with less of its glints' lobes has none: their share would be all rounding
+#define LEAST_MASS \
+  1e-5f  // a region with less of its glints' lobes has none: their share would be all rounding
 
 // Roughness of the smooth distribution and of a single glint's lobe on the disk of half vectors.
 typedef struct {
@@ -30,7 +31,8 @@ static inline wave_float root_jacobian(wave_float u, wave_float v, glint_lobe_sh
 // Integral of a lobe over [low, high], relative to its centre.
 static inline wave_float lobe_share(wave_float low, wave_float high, wave_float inverse_sigma) {
   const wave_float flat = 0.398942280f * (high - low) * inverse_sigma;
-  return wave_select(max(share_between(low, high, inverse_sigma), 0.0f), flat, wave_mask(inverse_sigma < FLAT_LOBE));
+  return wave_select(max(share_between(low, high, inverse_sigma), 0.0f), flat,
+                     wave_mask(inverse_sigma < FLAT_LOBE));
 }
 
 // A glint of a region. Angles are relative to the direction that the level was placed by.
@@ -39,8 +41,8 @@ typedef struct {
   wave_float strength;  // of its lobe: whether it is there, and its place in the footprint
 } region_glint;
 
-static inline region_glint glint_of_region(private const glint_level* g, glint_lobe_shape shape, int angular, int cell,
-                                           wave_uint angular_key) {
+static inline region_glint glint_of_region(private const glint_level* g, glint_lobe_shape shape, int angular,
+                                           int cell, wave_uint angular_key) {
   const int dk = angular & 1, dl = angular >> 1, di = cell & 1, dj = cell >> 1;
   const glint_bits bits = glint_draw(g->spatial_keys[cell], angular_key);
   const wave_float x = GLINT_LOW(bits.place, (float)di - g->x), y = GLINT_HIGH(bits.place, (float)dj - g->y);
@@ -51,7 +53,8 @@ static inline region_glint glint_of_region(private const glint_level* g, glint_l
   const wave_float inverse_radius = 2.0f * wave_reciprocal(g->cells);
   const wave_float u = (glint.a + g->center_a) * inverse_radius, v = (glint.b + g->center_b) * inverse_radius;
   const wave_int counts = wave_mask(fma(u, u, v * v) < 1.0f) & wave_mask(power > LEAST_POWER);
-  wave_float strength = gaussian_exp2(max(power, LEAST_POWER)) * roulette(GLINT_HIGH(bits.roulette, 0.0f), g->weight);
+  wave_float strength =
+      gaussian_exp2(max(power, LEAST_POWER)) * roulette(GLINT_HIGH(bits.roulette, 0.0f), g->weight);
 #if MICA_GLINT_ROULETTE
   strength *= presence_of(GLINT_HIGH(glint_draw_more(bits), 0.0f), g->presence, g->inverse_width);
 #endif
@@ -94,7 +97,8 @@ static inline wave_float region_density(private const glint_level* g, glint_lobe
         glint_angular_key(wave_to_uint(g->k + (angular & 1)), wave_to_uint(g->l + (angular >> 1)));
     for (int cell = 0; cell < 4; ++cell) {
       const region_glint glint = glint_of_region(g, shape, angular, cell, key);
-      const wave_float p1 = EXP2_SCALE * glint.a * glint.inverse_a, p2 = EXP2_SCALE * glint.b * glint.inverse_b;
+      const wave_float p1 = EXP2_SCALE * glint.a * glint.inverse_a,
+                       p2 = EXP2_SCALE * glint.b * glint.inverse_b;
       const wave_float lobe = gaussian_exp2(max(fma(-p1, p1, -p2 * p2), LEAST_POWER));
       mass += mass_in(region, glint);
       density += INVERSE_TWO_PI * glint.strength * glint.inverse_a * glint.inverse_b * lobe;

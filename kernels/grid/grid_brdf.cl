@@ -47,7 +47,8 @@ kernel void grid_draw_density(global const int* restrict fields, int pitch, glob
 }
 
 // x in [low, high] with the density of a lobe at 0, cut to it: by halving, on the same integral as its share.
-static inline wave_float draw_from_lobe(wave_float random, wave_float low, wave_float high, wave_float inverse_sigma) {
+static inline wave_float draw_from_lobe(wave_float random, wave_float low, wave_float high,
+                                        wave_float inverse_sigma) {
   const wave_float reach = 5.4f * wave_reciprocal(inverse_sigma);
   wave_float from = min(max(low, -reach), high), to = max(min(high, reach), low);
   const wave_float flat = fma(random, high - low, low);
@@ -76,10 +77,10 @@ static inline void choose_level(wave_float random, private glint_place* p, priva
   g->weight = wave_select(whole.weight, g->weight, coarser);
 }
 
-// One of the glints of a region, by what it has there; flat where there is none. `word`: random bits, of which
-// each glint's are a hash.
-static inline region_glint draw_glint(private const glint_level* g, glint_lobe_shape shape, glint_region region,
-                                      wave_uint word) {
+// One of the glints of a region, by what it has there; flat where there is none. `word`: random bits, of
+// which each glint's are a hash.
+static inline region_glint draw_glint(private const glint_level* g, glint_lobe_shape shape,
+                                      glint_region region, wave_uint word) {
   region_glint kept;
   kept.a = 0.0f, kept.b = 0.0f, kept.inverse_a = 0.0f, kept.inverse_b = 0.0f, kept.strength = 0.0f;
   wave_float mass = 0.0f;

@@ -10,10 +10,11 @@
 #else
 #define MICA_INT std::int32_t
 #define MICA_FLOAT float
-namespace mica::device_types {
+namespace mica::host::device_types {
 #endif
 
-// An image is stored as squares of 4x4 pixels, one a wave, row by row from the bottom left; so are the pixels in a square.
+// An image is stored as squares of 4x4 pixels, one a wave, row by row from the bottom left; so are the pixels
+// in a square.
 enum {
   MICA_IMAGE_SQUARE = 4,
   MICA_IMAGE_BAND = 64  // rows of pixels that one wave draws
@@ -28,7 +29,7 @@ typedef struct {
 
 #ifdef __cplusplus
 static_assert(sizeof(mica_image_window) == 20 && offsetof(mica_image_window, pixels) == 12);
-}  // namespace mica::device_types
+}  // namespace mica::host::device_types
 #endif
 
 #undef MICA_INT

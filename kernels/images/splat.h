@@ -1,11 +1,12 @@
-// Lobes of normals into the image of a P-NDF: each over the pixels that it reaches. One wave owns a band of the image's rows
-// and adds lobes one after the other, so that a pixel's sum has the same order whatever else runs.
+// Lobes of normals into the image of a P-NDF: each over the pixels that it reaches. One wave owns a band of
+// the image's rows and adds lobes one after the other, so that a pixel's sum has the same order whatever else
+// runs.
 #ifndef MICA_SPLAT_H
 #define MICA_SPLAT_H
 
-#include "wave/gaussian.h"
 #include "images/image_types.h"
 #include "pyramid/pyramid_elements.h"
+#include "wave/gaussian.h"
 #include "wave/wave.h"
 
 #define SPLAT_FIELDS 8
@@ -20,7 +21,8 @@ typedef struct {
 } splat_target;
 
 // Band `index` of all images' bands.
-static inline splat_target band_of(global float* images, mica_image_window window, int index, WAVE_SHARED float* records) {
+static inline splat_target band_of(global float* images, mica_image_window window, int index,
+                                   WAVE_SHARED float* records) {
   const int bands = (window.pixels + MICA_IMAGE_BAND - 1) / MICA_IMAGE_BAND;
   splat_target target;
   target.image = images + (size_t)(index / bands) * window.squares * window.squares * WAVE_LANES;
@@ -75,17 +77,19 @@ static inline void splat_one(splat_target target, int n) {
 }
 
 // Sixteen lobes, whose `r` is that of the half vector zero; up to where their exponent is `cutoff`.
-static inline void splat(splat_target target, private const element_lobes* lobes, float roughness, float cutoff, float scale,
-                         WAVE_SHARED int* scratch) {
+static inline void splat(splat_target target, private const element_lobes* lobes, float roughness,
+                         float cutoff, float scale, WAVE_SHARED int* scratch) {
   const float to_pixels = roughness / target.window.step, last = (float)(target.window.pixels - 1);
-  const float left = target.window.left_s / target.window.step, bottom = target.window.bottom_t / target.window.step;
+  const float left = target.window.left_s / target.window.step,
+              bottom = target.window.bottom_t / target.window.step;
   const wave_float x = fma(lobes->r_s, -to_pixels, -left), y = fma(lobes->r_t, -to_pixels, -bottom);
   const wave_float rest = max(cutoff - lobes->q_position, 1e-20f);
   const wave_float reach_s = rest * lobes->n_ss, reach_t = rest * lobes->n_tt;
   const wave_float reach_x = to_pixels * (reach_s * wave_rough_rsqrt(reach_s));
   const wave_float reach_y = to_pixels * (reach_t * wave_rough_rsqrt(reach_t));
   const wave_float low_x = max(x - reach_x, 0.0f), high_x = min(x + reach_x, last);
-  const wave_float low_y = max(y - reach_y, (float)target.first_row), high_y = min(y + reach_y, (float)target.last_row);
+  const wave_float low_y = max(y - reach_y, (float)target.first_row),
+                   high_y = min(y + reach_y, (float)target.last_row);
   const uint bits = wave_ballot(wave_mask(low_x <= high_x) & wave_mask(low_y <= high_y) &
                                     wave_mask(lobes->q_position < cutoff) & wave_mask(lobes->weight > 0.0f),
                                 scratch);
@@ -95,7 +99,8 @@ static inline void splat(splat_target target, private const element_lobes* lobes
   const wave_float exponent = (-EXP2_SCALE * EXP2_SCALE) * lobes->q_position;
   wave_list_store(target.records, x);
   wave_list_store(target.records + WAVE_LANES, y);
-  wave_list_store(target.records + 2 * WAVE_LANES, scale * lobes->weight * gaussian_exp2(max(exponent, -126.0f)));
+  wave_list_store(target.records + 2 * WAVE_LANES,
+                  scale * lobes->weight * gaussian_exp2(max(exponent, -126.0f)));
   wave_list_store(target.records + 3 * WAVE_LANES, over_det * lobes->n_tt);
   wave_list_store(target.records + 4 * WAVE_LANES, -2.0f * over_det * lobes->n_st);
   wave_list_store(target.records + 5 * WAVE_LANES, over_det * lobes->n_ss);

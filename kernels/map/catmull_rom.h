@@ -1,15 +1,16 @@
-// Included by triangles.cl: the leaf of a bicubic map, one texel quad after the other, its 4x4 sub-quads in the lanes.
+// Included by triangles.cl: the leaf of a bicubic map, one texel quad after the other, its 4x4 sub-quads in
+// the lanes.
 #ifndef MICA_CATMULL_ROM_H
 #define MICA_CATMULL_ROM_H
 
 // Weight of control point `k` (-1, 0, 1, 2) at x = 0, 1/4, 1/2, 3/4, 1 of the quad. Catmull-Rom, tension 1/2.
-constant float catmull_rom_weights[20] = {
-    0.0f, -9.0f / 128, -1.0f / 16, -3.0f / 128, 0.0f,  // k = -1
-    1.0f, 111.0f / 128, 9.0f / 16, 29.0f / 128, 0.0f,  // k = 0
-    0.0f, 29.0f / 128, 9.0f / 16, 111.0f / 128, 1.0f,  // k = 1
-    0.0f, -3.0f / 128, -1.0f / 16, -9.0f / 128, 0.0f};  // k = 2
+constant float catmull_rom_weights[20] = {0.0f, -9.0f / 128,  -1.0f / 16, -3.0f / 128,  0.0f,   // k = -1
+                                          1.0f, 111.0f / 128, 9.0f / 16,  29.0f / 128,  0.0f,   // k = 0
+                                          0.0f, 29.0f / 128,  9.0f / 16,  111.0f / 128, 1.0f,   // k = 1
+                                          0.0f, -3.0f / 128,  -1.0f / 16, -9.0f / 128,  0.0f};  // k = 2
 
-// Weights of control point k at the lower (side 0) or upper (side 1) edge of the lanes' sub-quads, along x or y.
+// Weights of control point k at the lower (side 0) or upper (side 1) edge of the lanes' sub-quads, along x or
+// y.
 static inline wave_float weight_x(int k, int side) {
 #if MICA_WAVE_ITEMS
   return catmull_rom_weights[5 * k + (WAVE_LANE & 3) + side];
@@ -28,8 +29,9 @@ static inline wave_float weight_y(int k, int side) {
 }
 
 // Normal offsets at the corners of the sub-quads, of the component whose quad corner 00 is at `texel`.
-static inline void subquad_corners(global const int* texel, int half_vector, float inverse_roughness, private wave_float* c00,
-                            private wave_float* c10, private wave_float* c01, private wave_float* c11) {
+static inline void subquad_corners(global const int* texel, int half_vector, float inverse_roughness,
+                                   private wave_float* c00, private wave_float* c10, private wave_float* c01,
+                                   private wave_float* c11) {
   const float scale = inverse_roughness / MICA_NORMAL_ONE;
   wave_float v00 = 0.0f, v10 = 0.0f, v01 = 0.0f, v11 = 0.0f;
   for (int row = 0; row < 4; ++row) {
@@ -46,8 +48,8 @@ static inline void subquad_corners(global const int* texel, int half_vector, flo
   *c00 = v00, *c10 = v10, *c01 = v01, *c11 = v11;
 }
 
-// Distance of the half vector from all values that Catmull-Rom can take between the texels `lanes` and their right and
-// upper neighbours: 25/16 is the sum of the absolute weights at the centre, their largest.
+// Distance of the half vector from all values that Catmull-Rom can take between the texels `lanes` and their
+// right and upper neighbours: 25/16 is the sum of the absolute weights at the centre, their largest.
 static inline wave_float patch_distance(global const int* texel, int half_vector, float inverse_roughness) {
   const wave_int first = wave_load_4x4(texel - MICA_BLOCK_ROW - 1, MICA_BLOCK_ROW) - half_vector;
   wave_int low = first, high = first;
@@ -62,8 +64,8 @@ static inline wave_float patch_distance(global const int* texel, int half_vector
 }
 
 // As its namesake in texel_quads.h.
-static inline void take_leaf(global const mica_map_query* query, global const int* normals, int at, int i, int j, int room_i,
-                             int room_j, private wave_list* list, private integrator* out,
+static inline void take_leaf(global const mica_map_query* query, global const int* normals, int at, int i,
+                             int j, int room_i, int room_j, private wave_list* list, private integrator* out,
                              WAVE_SHARED int* scratch) {
   global const int* texel = normals + at;
   const wave_int inside_map = wave_mask((WAVE_LANE & 3) < room_i) & wave_mask((WAVE_LANE >> 2) < room_j);
@@ -80,9 +82,12 @@ static inline void take_leaf(global const mica_map_query* query, global const in
     q.x = fma(0.25f, wave_to_float(WAVE_LANE & 3), (float)(i + patch_i) - query->mean_x);
     q.y = fma(0.25f, wave_to_float(WAVE_LANE >> 2), (float)(j + patch_j) - query->mean_y);
     subquad_corners(corner, query->half_s, query->inverse_roughness, &q.s00, &q.s10, &q.s01, &q.s11);
-    subquad_corners(corner + MICA_BLOCK_PLANE, query->half_t, query->inverse_roughness, &q.t00, &q.t10, &q.t01, &q.t11);
-    const wave_float b_s = max(max(min(min(q.s00, q.s10), min(q.s01, q.s11)), -max(max(q.s00, q.s10), max(q.s01, q.s11))), 0.0f);
-    const wave_float b_t = max(max(min(min(q.t00, q.t10), min(q.t01, q.t11)), -max(max(q.t00, q.t10), max(q.t01, q.t11))), 0.0f);
+    subquad_corners(corner + MICA_BLOCK_PLANE, query->half_t, query->inverse_roughness, &q.t00, &q.t10,
+                    &q.t01, &q.t11);
+    const wave_float b_s =
+        max(max(min(min(q.s00, q.s10), min(q.s01, q.s11)), -max(max(q.s00, q.s10), max(q.s01, q.s11))), 0.0f);
+    const wave_float b_t =
+        max(max(min(min(q.t00, q.t10), min(q.t01, q.t11)), -max(max(q.t00, q.t10), max(q.t01, q.t11))), 0.0f);
     const wave_float box = fma(b_s, b_s, fma(b_t, b_t, footprint_bound(query, q.x, q.y, QUAD_SIZE)));
     const uint bits = wave_ballot(wave_mask(box <= query->cutoff), scratch);
     if (bits) take_quads(query, &q, bits, list, out, scratch);

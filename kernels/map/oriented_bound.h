@@ -1,5 +1,5 @@
-// What a node of a mixture says of the elements under its sixteen children: a box of their means along an axis of its own,
-// and how far they spread along it and across. host/methods/gaussians/mixture_bound.h
+// What a node of a mixture says of the elements under its sixteen children: a box of their means along an
+// axis of its own, and how far they spread along it and across. host/methods/gaussians/mixture_bound.h
 #ifndef MICA_ORIENTED_BOUND_H
 #define MICA_ORIENTED_BOUND_H
 
@@ -30,18 +30,20 @@ static inline wave_float outside(wave_float value, wave_float low, wave_float hi
   return max(max(low - value, value - high), 0.0f);
 }
 
-// Lanes whose elements may reach the cutoff at the normal or slope (x, y): q_position + d_1^2 / v_1 + d_2^2 / v_2 <= cutoff
-// without the divisions, d the distance from the box in roughnesses, v the variance there in roughnesses squared: `rough`,
-// and spread_variance times the square of the spread.
-static inline wave_int reach_cutoff(const private oriented_boxes* boxes, float x, float y, float inverse_roughness,
-                                    float spread_variance, wave_float rough, wave_float q_position, float cutoff) {
+// Lanes whose elements may reach the cutoff at the normal or slope (x, y): q_position + d_1^2 / v_1 + d_2^2 /
+// v_2 <= cutoff without the divisions, d the distance from the box in roughnesses, v the variance there in
+// roughnesses squared: `rough`, and spread_variance times the square of the spread.
+static inline wave_int reach_cutoff(const private oriented_boxes* boxes, float x, float y,
+                                    float inverse_roughness, float spread_variance, wave_float rough,
+                                    wave_float q_position, float cutoff) {
   const wave_float along = fma(boxes->axis_x, x, boxes->axis_y * y);
   const wave_float across = fma(boxes->axis_x, y, -(boxes->axis_y * x));
   const wave_float d_1 = inverse_roughness * outside(along, boxes->along_min, boxes->along_max);
   const wave_float d_2 = inverse_roughness * outside(across, boxes->across_min, boxes->across_max);
   const wave_float v_1 = fma(spread_variance * boxes->spread_along, boxes->spread_along, rough);
   const wave_float v_2 = fma(spread_variance * boxes->spread_across, boxes->spread_across, rough);
-  return wave_mask(fma(d_1 * d_1, v_2, d_2 * d_2 * v_1) <= (cutoff - q_position) * v_1 * v_2) & boxes->present;
+  return wave_mask(fma(d_1 * d_1, v_2, d_2 * d_2 * v_1) <= (cutoff - q_position) * v_1 * v_2) &
+         boxes->present;
 }
 
 #endif  // MICA_ORIENTED_BOUND_H

@@ -11,10 +11,10 @@ static inline wave_float distance_from(int value, wave_int a, wave_int b, wave_i
   return wave_to_float(max(max(low - value, value - high), zero));
 }
 
-// The sixteen quads of a leaf, whose lower left texel is stored at `at` and lies (i, j) texels from the mean; `room_i`,
-// `room_j` are the texels that the map has left there.
-static inline void take_leaf(global const mica_map_query* query, global const int* normals, int at, int i, int j,
-                             int room_i, int room_j, private wave_list* list, private integrator* out,
+// The sixteen quads of a leaf, whose lower left texel is stored at `at` and lies (i, j) texels from the mean;
+// `room_i`, `room_j` are the texels that the map has left there.
+static inline void take_leaf(global const mica_map_query* query, global const int* normals, int at, int i,
+                             int j, int room_i, int room_j, private wave_list* list, private integrator* out,
                              WAVE_SHARED int* scratch) {
   quad_corners c;
   load_corners(normals, at, &c);

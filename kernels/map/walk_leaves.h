@@ -1,12 +1,13 @@
-// Included by a method's kernel: the way from the blocks under a footprint down to the leaves that matter to it, sixteen
-// children at a time. The kernel says what its queries and nodes are, and what to do with a leaf:
-//   LEAF_QUERY                the query's struct, with LEAF_PLACE(query) its mica_map_query (default: itself);
-//   LEAF_NODE_STRIDE          shorts a node;
-//   LEAF_DATA, LEAF_AT(leaf_i, leaf_j)   what leaves are stored as (default: ints), and where in a `block` (default: normals);
-//   LEAF_SURVIVORS(query, node, i, j, child_size, scratch)   bits of the children that matter, for one reason in the low half
+// Included by a method's kernel: the way from the blocks under a footprint down to the leaves that matter to
+// it, sixteen children at a time. The kernel says what its queries and nodes are, and what to do with a leaf:
+//   LEAF_QUERY                the query's struct, with LEAF_PLACE(query) its mica_map_query (default:
+//   itself); LEAF_NODE_STRIDE          shorts a node; LEAF_DATA, LEAF_AT(leaf_i, leaf_j)   what leaves are
+//   stored as (default: ints), and where in a `block` (default: normals); LEAF_SURVIVORS(query, node, i, j,
+//   child_size, scratch)   bits of the children that matter, for one reason in the low half
 //                             and for another in the high half: LEAF_TAKE finds them in `reasons`;
-//   LEAF_WALK                 the function's name (default: walk_leaves); a kernel that walks in two ways includes this twice;
-//   LEAF_RESULTS (default: leaf_results), LEAF_TAKE(query, normals, at, i, j, room_i, room_j, results, scratch)   what a
+//   LEAF_WALK                 the function's name (default: walk_leaves); a kernel that walks in two ways
+//   includes this twice; LEAF_RESULTS (default: leaf_results), LEAF_TAKE(query, normals, at, i, j, room_i,
+//   room_j, results, scratch)   what a
 //                             leaf adds to.
 #include "map/map_cull.h"
 
@@ -20,19 +21,23 @@
 #define LEAF_DATA int
 #endif
 #ifndef LEAF_AT
-#define LEAF_AT(leaf_i, leaf_j) (block.index * MICA_BLOCK_STRIDE + ((leaf_j) + 1) * MICA_BLOCK_ROW + (leaf_i) + 1)
+#define LEAF_AT(leaf_i, leaf_j) \
+  (block.index * MICA_BLOCK_STRIDE + ((leaf_j) + 1) * MICA_BLOCK_ROW + (leaf_i) + 1)
 #endif
 #ifndef LEAF_PLACE
 #define LEAF_PLACE(query) (query)
 #endif
 
 static inline void LEAF_WALK(global const LEAF_QUERY* query, mica_map_grid grid,
-                               global const LEAF_DATA* normals, global const short* block_nodes, global const short* tile_nodes,
-                               private LEAF_RESULTS* results, WAVE_SHARED int* scratch) {
+                             global const LEAF_DATA* normals, global const short* block_nodes,
+                             global const short* tile_nodes, private LEAF_RESULTS* results,
+                             WAVE_SHARED int* scratch) {
   global const mica_map_query* place = LEAF_PLACE(query);
   // Quad (i, j) spans [i, i + 1] in the coordinates of the mean.
-  const int first_i = (int)floor(place->mean_x - place->extent_x), last_i = (int)floor(place->mean_x + place->extent_x);
-  const int first_j = (int)floor(place->mean_y - place->extent_y), last_j = (int)floor(place->mean_y + place->extent_y);
+  const int first_i = (int)floor(place->mean_x - place->extent_x),
+            last_i = (int)floor(place->mean_x + place->extent_x);
+  const int first_j = (int)floor(place->mean_y - place->extent_y),
+            last_j = (int)floor(place->mean_y + place->extent_y);
   const int first_x = block_of(place->mean_i + first_i, grid.width, grid.blocks_x);
   const int last_x = block_of(place->mean_i + last_i, grid.width, grid.blocks_x);
   const int first_y = block_of(place->mean_j + first_j, grid.height, grid.blocks_y);
@@ -46,14 +51,14 @@ static inline void LEAF_WALK(global const LEAF_QUERY* query, mica_map_grid grid,
       // All tiles before all leaves: a test is a long chain of steps, and they overlap.
       int tiles[16], count = 0;
       uint leaves_of[16];
-      const uint tile_reasons =
-          LEAF_SURVIVORS(query, block_nodes + block.index * LEAF_NODE_STRIDE, block.i, block.j, MICA_TILE, scratch);
+      const uint tile_reasons = LEAF_SURVIVORS(query, block_nodes + block.index * LEAF_NODE_STRIDE, block.i,
+                                               block.j, MICA_TILE, scratch);
       for (uint left = (tile_reasons | tile_reasons >> 16) & 0xffffu; left; left &= left - 1) {
         const int tile = lowest_bit(left);
         tiles[count] = tile;
         leaves_of[count++] = LEAF_SURVIVORS(query, tile_nodes + (block.index * 16 + tile) * LEAF_NODE_STRIDE,
-                                            block.i + (tile & 3) * MICA_TILE, block.j + (tile >> 2) * MICA_TILE, MICA_LEAF,
-                                            scratch);
+                                            block.i + (tile & 3) * MICA_TILE,
+                                            block.j + (tile >> 2) * MICA_TILE, MICA_LEAF, scratch);
       }
       for (int n = 0; n < count; ++n) {
         const int tile = tiles[n], tile_i = (tile & 3) * MICA_TILE, tile_j = (tile >> 2) * MICA_TILE;

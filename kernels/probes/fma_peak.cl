@@ -1,4 +1,5 @@
-// The multiply-add rate that the device can sustain in this form of a wave: what benchmarks are measured against.
+// The multiply-add rate that the device can sustain in this form of a wave: what benchmarks are measured
+// against.
 
 #include "wave/wave.h"
 

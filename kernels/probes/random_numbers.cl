@@ -2,8 +2,8 @@
 
 #include "wave/random_numbers.h"
 
-// Number `dimension` of keys first_low + n with the upper half `key_high`, twice: alone, and as a lane of a wave. Global
-// size as for any wave kernel, sixteen keys a wave.
+// Number `dimension` of keys first_low + n with the upper half `key_high`, twice: alone, and as a lane of a
+// wave. Global size as for any wave kernel, sixteen keys a wave.
 kernel void random_numbers(uint first_low, uint key_high, uint dimension, global float* restrict alone,
                            global float* restrict in_a_wave) {
   const int first = WAVE_LANES * WAVE_ITEM_INDEX;

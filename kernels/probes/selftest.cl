@@ -1,17 +1,18 @@
-// What `mica selftest` asks of a device: the layout of the structs that it shares with the host, and its arithmetic in
-// the special functions of the other kernels.
+// What `mica selftest` asks of a device: the layout of the structs that it shares with the host, and its
+// arithmetic in the special functions of the other kernels.
 
-#include "wave/gaussian.h"
 #include "struct_layout.h"
 #include "types.h"
+#include "wave/gaussian.h"
 #include "wave/wave.h"
 
 // Sizes and offsets in bytes, in the order of MICA_STRUCT_LAYOUT. Global size: 1.
 kernel void selftest_layout(global int* restrict layout) {
 #define SIZE(type) *layout++ = (int)sizeof(type);
-#define OFFSET(type, field)                                               \
-  {                                                                       \
-    private type value;                                                   \
+#define OFFSET(type, field)                                                 \
+  {                                                                         \
+   private                                                                  \
+    type value;                                                             \
     *layout++ = (int)((private char*)&value.field - (private char*)&value); \
   }
   MICA_STRUCT_LAYOUT(SIZE, OFFSET)

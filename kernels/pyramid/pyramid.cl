@@ -1,13 +1,14 @@
-// `pyramid`: the P-NDF of a footprint on merged elements. A level cuts the map into blocks and the normals into cells, and
-// has one 4D Gaussian in (position, normal) for each block and cell that is not empty: weight w, mean (c, n), covariance
+// `pyramid`: the P-NDF of a footprint on merged elements. A level cuts the map into blocks and the normals
+// into cells, and has one 4D Gaussian in (position, normal) for each block and cell that is not empty: weight
+// w, mean (c, n), covariance
 //     | P    K^T |
 //     | K    N   |.
 // With m and F the footprint's mean and covariance, h the half vector, its share of D is exactly
 //     w N(m - c; P + F) N(h - n - K A (m - c); N + sigma_r^2 I - K A K^T),   A = (P + F)^-1.
 // One wave a query: boxes of sixteen children are tested at a time, and sixteen elements summed at a time.
 
-#include "wave/gaussian.h"
 #include "pyramid/pyramid_elements.h"
+#include "wave/gaussian.h"
 
 // 1: the sum becomes the number of elements that were evaluated, for benchmarks.
 #ifndef MICA_COUNT_ELEMENTS
@@ -20,8 +21,8 @@ typedef struct {
 } record_results;
 
 // The sixteen elements of a record; without the query's scale.
-static inline void take_record(global const mica_pyramid_query* query, global const short* record, group_place place,
-                               private record_results* results) {
+static inline void take_record(global const mica_pyramid_query* query, global const short* record,
+                               group_place place, private record_results* results) {
   const element_lobes e = slice_record(query, query->map.half_s, query->map.half_t, record, place);
   const wave_float form = fma(e.r_s, fma(e.n_tt, e.r_s, -2.0f * e.n_st * e.r_t), e.n_ss * e.r_t * e.r_t);
   const wave_float q = fma(form * e.root, e.root, e.q_position);

@@ -1,4 +1,5 @@
-// Merged elements under a footprint: which records of a level it reaches, and what sixteen elements are for it.
+// Merged elements under a footprint: which records of a level it reaches, and what sixteen elements are for
+// it.
 #ifndef MICA_PYRAMID_ELEMENTS_H
 #define MICA_PYRAMID_ELEMENTS_H
 
@@ -12,7 +13,8 @@
 #endif
 #if MICA_RECORD_BITS == 16
 #define RECORD_STRIDE MICA_RECORD_STRIDE_16
-#define ELEMENT_FIELD(record, field) wave_to_float(wave_load_short((record) + MICA_RECORD_FIELDS_16 + 16 * (field)))
+#define ELEMENT_FIELD(record, field) \
+  wave_to_float(wave_load_short((record) + MICA_RECORD_FIELDS_16 + 16 * (field)))
 #else
 #define RECORD_STRIDE MICA_RECORD_STRIDE_8
 #define ELEMENT_FIELD(record, field) \
@@ -30,12 +32,15 @@ typedef struct {
   float s_low, s_high, t_low, t_high;
 } half_vector_box;
 
-static inline int node_word(global const short* node, int word) { return ((global const int*)node)[word]; }
+static inline int node_word(global const short* node, int word) {
+  return ((global const int*)node)[word];
+}
 
-// Bits of the children of `node` that reach the cutoff. An element's exponent is at least that of its position plus
-// that of its normal, each with the variance that its bound tells added.
-static inline uint surviving_records(global const mica_pyramid_query* query, half_vector_box half_vectors, global const short* node,
-                                     group_place place, float position_unit, WAVE_SHARED int* scratch) {
+// Bits of the children of `node` that reach the cutoff. An element's exponent is at least that of its
+// position plus that of its normal, each with the variance that its bound tells added.
+static inline uint surviving_records(global const mica_pyramid_query* query, half_vector_box half_vectors,
+                                     global const short* node, group_place place, float position_unit,
+                                     WAVE_SHARED int* scratch) {
   global const mica_map_query* map = &query->map;
   const wave_float x = fma(wave_to_float(wave_load_short(node)), position_unit, place.x);
   const wave_float y = fma(wave_to_float(wave_load_short(node + 32)), position_unit, place.y);
@@ -48,8 +53,10 @@ static inline uint surviving_records(global const mica_pyramid_query* query, hal
   const wave_float d1 = max(fma(half_width, -unit_1x, fma(half_height, -unit_1y, p1)), 0.0f);
   const wave_float d2 = max(fma(half_width, -unit_2x, fma(half_height, -unit_2y, p2)), 0.0f);
 
-  const wave_float s_min = wave_to_float(wave_load_short(node + 64)), s_max = wave_to_float(wave_load_short(node + 80));
-  const wave_float t_min = wave_to_float(wave_load_short(node + 96)), t_max = wave_to_float(wave_load_short(node + 112));
+  const wave_float s_min = wave_to_float(wave_load_short(node + 64)),
+                   s_max = wave_to_float(wave_load_short(node + 80));
+  const wave_float t_min = wave_to_float(wave_load_short(node + 96)),
+                   t_max = wave_to_float(wave_load_short(node + 112));
   const wave_float d_s = max(max(s_min - half_vectors.s_high, half_vectors.s_low - s_max), 0.0f);
   const wave_float d_t = max(max(t_min - half_vectors.t_high, half_vectors.t_low - t_max), 0.0f);
 
@@ -62,21 +69,22 @@ static inline uint surviving_records(global const mica_pyramid_query* query, hal
   const wave_float q_p = fma(d1, d1, d2 * d2);
   const wave_float q_n = (k * k / ((float)MICA_BOUND_ONE * MICA_BOUND_ONE)) * fma(d_s, d_s, d_t * d_t);
   const wave_float q = fma(q_p, variance_n, q_n * variance_p);
-  return wave_ballot(wave_mask(q <= map->cutoff * variance_p * variance_n) & wave_mask(s_min <= s_max), scratch);
+  return wave_ballot(wave_mask(q <= map->cutoff * variance_p * variance_n) & wave_mask(s_min <= s_max),
+                     scratch);
 }
 
 // Sixteen elements as the footprint slices them: lobes of normals, in roughnesses.
 typedef struct {
-  wave_float weight;          // over the square roots of both determinants; without the exponent
-  wave_float q_position;      // |.|^2 of the position, whitened
-  wave_float r_s, r_t;        // the half vector less the mean
+  wave_float weight;      // over the square roots of both determinants; without the exponent
+  wave_float q_position;  // |.|^2 of the position, whitened
+  wave_float r_s, r_t;    // the half vector less the mean
   wave_float n_ss, n_st, n_tt;
-  wave_float root;            // 1 / sqrt(det n)
+  wave_float root;  // 1 / sqrt(det n)
 } element_lobes;
 
 // `half_s`, `half_t`: fixed point.
-static inline element_lobes slice_record(global const mica_pyramid_query* query, int half_s, int half_t, global const short* record,
-                                         group_place place) {
+static inline element_lobes slice_record(global const mica_pyramid_query* query, int half_s, int half_t,
+                                         global const short* record, group_place place) {
   global const int* int_header = (global const int*)record;
   global const float* header = (global const float*)record;
   const float to_roughness = query->map.inverse_roughness;
@@ -89,8 +97,10 @@ static inline element_lobes slice_record(global const mica_pyramid_query* query,
 
   // m - c, and P + F with its adjugate in place of its inverse.
   const float place_unit = -header[MICA_RECORD_PLACE_UNIT];
-  const wave_float x = fma(ELEMENT_FIELD(record, MICA_ELEMENT_X), place_unit, -(place.x + header[MICA_RECORD_ORIGIN_X]));
-  const wave_float y = fma(ELEMENT_FIELD(record, MICA_ELEMENT_Y), place_unit, -(place.y + header[MICA_RECORD_ORIGIN_Y]));
+  const wave_float x =
+      fma(ELEMENT_FIELD(record, MICA_ELEMENT_X), place_unit, -(place.x + header[MICA_RECORD_ORIGIN_X]));
+  const wave_float y =
+      fma(ELEMENT_FIELD(record, MICA_ELEMENT_Y), place_unit, -(place.y + header[MICA_RECORD_ORIGIN_Y]));
   const wave_float p_xx = fma(ELEMENT_FIELD(record, MICA_ELEMENT_XX), p_unit, query->cov_xx);
   const wave_float p_xy = fma(ELEMENT_FIELD(record, MICA_ELEMENT_XY), p_unit, query->cov_xy);
   const wave_float p_yy = fma(ELEMENT_FIELD(record, MICA_ELEMENT_YY), p_unit, query->cov_yy);
@@ -99,20 +109,27 @@ static inline element_lobes slice_record(global const mica_pyramid_query* query,
   const wave_float a_x = fma(p_yy, x, -(p_xy * y)), a_y = fma(p_xx, y, -(p_xy * x));
 
   // The residual of the normal, and its covariance less what the position explains; in roughnesses.
-  const wave_float k_sx = ELEMENT_FIELD(record, MICA_ELEMENT_SX), k_sy = ELEMENT_FIELD(record, MICA_ELEMENT_SY);
-  const wave_float k_tx = ELEMENT_FIELD(record, MICA_ELEMENT_TX), k_ty = ELEMENT_FIELD(record, MICA_ELEMENT_TY);
+  const wave_float k_sx = ELEMENT_FIELD(record, MICA_ELEMENT_SX),
+                   k_sy = ELEMENT_FIELD(record, MICA_ELEMENT_SY);
+  const wave_float k_tx = ELEMENT_FIELD(record, MICA_ELEMENT_TX),
+                   k_ty = ELEMENT_FIELD(record, MICA_ELEMENT_TY);
   const wave_float k_p = -k_unit * inverse_p, kk_p = k_unit * k_p;
   element_lobes lobes;
   lobes.q_position = inverse_p * fma(x, a_x, y * a_y);
-  lobes.r_s = fma(k_p, fma(k_sx, a_x, k_sy * a_y), fma(ELEMENT_FIELD(record, MICA_ELEMENT_S), mean_unit, offset_s));
-  lobes.r_t = fma(k_p, fma(k_tx, a_x, k_ty * a_y), fma(ELEMENT_FIELD(record, MICA_ELEMENT_T), mean_unit, offset_t));
+  lobes.r_s =
+      fma(k_p, fma(k_sx, a_x, k_sy * a_y), fma(ELEMENT_FIELD(record, MICA_ELEMENT_S), mean_unit, offset_s));
+  lobes.r_t =
+      fma(k_p, fma(k_tx, a_x, k_ty * a_y), fma(ELEMENT_FIELD(record, MICA_ELEMENT_T), mean_unit, offset_t));
   const wave_float b_sx = fma(p_yy, k_sx, -(p_xy * k_sy)), b_sy = fma(p_xx, k_sy, -(p_xy * k_sx));
   const wave_float b_tx = fma(p_yy, k_tx, -(p_xy * k_ty)), b_ty = fma(p_xx, k_ty, -(p_xy * k_tx));
-  lobes.n_ss = fma(kk_p, fma(k_sx, b_sx, k_sy * b_sy), fma(ELEMENT_FIELD(record, MICA_ELEMENT_SS), n_unit, 1.0f));
+  lobes.n_ss =
+      fma(kk_p, fma(k_sx, b_sx, k_sy * b_sy), fma(ELEMENT_FIELD(record, MICA_ELEMENT_SS), n_unit, 1.0f));
   lobes.n_st = fma(kk_p, fma(k_tx, b_sx, k_ty * b_sy), n_unit * ELEMENT_FIELD(record, MICA_ELEMENT_ST));
-  lobes.n_tt = fma(kk_p, fma(k_tx, b_tx, k_ty * b_ty), fma(ELEMENT_FIELD(record, MICA_ELEMENT_TT), n_unit, 1.0f));
+  lobes.n_tt =
+      fma(kk_p, fma(k_tx, b_tx, k_ty * b_ty), fma(ELEMENT_FIELD(record, MICA_ELEMENT_TT), n_unit, 1.0f));
   lobes.root = wave_rough_rsqrt(fma(lobes.n_ss, lobes.n_tt, -(lobes.n_st * lobes.n_st)));
-  lobes.weight = ELEMENT_FIELD(record, MICA_ELEMENT_WEIGHT) * header[MICA_RECORD_WEIGHT_UNIT] * root_p * lobes.root;
+  lobes.weight =
+      ELEMENT_FIELD(record, MICA_ELEMENT_WEIGHT) * header[MICA_RECORD_WEIGHT_UNIT] * root_p * lobes.root;
   return lobes;
 }
 
@@ -121,9 +138,10 @@ static inline int group_of(int i, int size, int groups, int group_size) {
   return period * groups + (i - period * size) / group_size;
 }
 
-static inline group_place place_group(global const mica_map_query* map, mica_map_grid level, int group_size, int group_x,
-                                      int group_y) {
-  const int period_x = floor_divide(group_x, level.blocks_x), period_y = floor_divide(group_y, level.blocks_y);
+static inline group_place place_group(global const mica_map_query* map, mica_map_grid level, int group_size,
+                                      int group_x, int group_y) {
+  const int period_x = floor_divide(group_x, level.blocks_x),
+            period_y = floor_divide(group_y, level.blocks_y);
   const int inside_x = group_x - period_x * level.blocks_x, inside_y = group_y - period_y * level.blocks_y;
   group_place place;
   place.x = (float)(period_x * level.width + inside_x * group_size - map->mean_i) - map->mean_x;

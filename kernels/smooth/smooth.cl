@@ -1,13 +1,13 @@
-// `smooth`: the P-NDF of a footprint as one Beckmann lobe with the mean and the covariance of its slopes, at the cost of a
-// few cells of their pyramid. Glints are lost: the baseline. After Dupuy et al., "Linear Efficient Antialiased Displacement
-// and Reflectance Mapping", 2013.
+// `smooth`: the P-NDF of a footprint as one Beckmann lobe with the mean and the covariance of its slopes, at
+// the cost of a few cells of their pyramid. Glints are lost: the baseline. After Dupuy et al., "Linear
+// Efficient Antialiased Displacement and Reflectance Mapping", 2013.
 
 #include "beckmanns/footprint_slopes.h"
 #include "types.h"
 #include "wave/wave.h"
 
-// Density of every query, in the order of their slots. Global size: queries (vectors), or 16 a query (items). The grid is
-// that of the finest level.
+// Density of every query, in the order of their slots. Global size: queries (vectors), or 16 a query (items).
+// The grid is that of the finest level.
 kernel void smooth(global const mica_smooth_query* restrict queries, int query_count, mica_map_grid grid,
                    global const short* restrict pyramid, global float* restrict density) {
   WAVE_DECLARE_SCRATCH(scratch);

@@ -1,9 +1,10 @@
 // The standard 2D Gaussian over right triangles with axis-parallel legs. [Yan14] Eq. 8.
 //
-// The longer leg is integrated by Gauss-Legendre over what the cutoff leaves of it, the shorter one in closed form. The
-// hypotenuse has a slope <= 1, so the integrand is as smooth as the Gaussian, however thin the triangle. Half of all
-// right triangles lie beyond the cutoff, and the others need 4 to 20 points: they are listed by the length of their
-// range, short or long, and integrated when sixteen of a kind have come together.
+// The longer leg is integrated by Gauss-Legendre over what the cutoff leaves of it, the shorter one in closed
+// form. The hypotenuse has a slope <= 1, so the integrand is as smooth as the Gaussian, however thin the
+// triangle. Half of all right triangles lie beyond the cutoff, and the others need 4 to 20 points: they are
+// listed by the length of their range, short or long, and integrated when sixteen of a kind have come
+// together.
 #ifndef MICA_RIGHT_TRIANGLES_H
 #define MICA_RIGHT_TRIANGLES_H
 
@@ -11,8 +12,8 @@
 #include "wave/quadrature.h"
 #include "wave/wave.h"
 
-// 1: integrals return the floating-point operations that they take instead (a fused multiply-add is two); the benchmark's
-// share of the device's peak is made of it.
+// 1: integrals return the floating-point operations that they take instead (a fused multiply-add is two); the
+// benchmark's share of the device's peak is made of it.
 #ifndef MICA_COUNT_FLOPS
 #define MICA_COUNT_FLOPS 0
 #endif
@@ -44,14 +45,15 @@ typedef struct {
   wave_list short_ones, long_ones;  // of right_triangles, by their range
 } integrator;
 
-// y = y_middle + y_slope * node in the scale of gaussian_exp2, the hypotenuse in that of gaussian_cdf_centred. Lanes
-// beyond the cutoff have a y_slope of zero.
+// y = y_middle + y_slope * node in the scale of gaussian_exp2, the hypotenuse in that of
+// gaussian_cdf_centred. Lanes beyond the cutoff have a y_slope of zero.
 typedef struct {
   wave_float y_middle, y_slope, q_plane, limit_middle, limit_slope, fixed, weight;
 } right_triangles;
 
 // Integrates the first sixteen of a list, or as many as there are.
-static inline void integrate_first(private wave_list* list, private accumulator* total, WAVE_SHARED int* scratch) {
+static inline void integrate_first(private wave_list* list, private accumulator* total,
+                                   WAVE_SHARED int* scratch) {
   const wave_float zero = 0.0f;
   const wave_int valid = wave_mask(WAVE_LANE < list->count);
   const wave_float y_middle = wave_list_field(*list, 0);
@@ -85,10 +87,11 @@ static inline void append_right_triangles(right_triangles triangles, uint bits, 
   if (list->count >= WAVE_LANES) integrate_first(list, total, scratch);
 }
 
-// Triangles with legs from (t, x) to (t + t_leg, x) and to (t, x + x_leg), whose integrals exp(-q_plane / 2) * weight
-// multiplies.
-static inline right_triangles make_right_triangles(wave_float t, wave_float t_leg, wave_float x, wave_float x_leg,
-                                                   wave_float q_plane, wave_float weight, float cutoff) {
+// Triangles with legs from (t, x) to (t + t_leg, x) and to (t, x + x_leg), whose integrals exp(-q_plane / 2)
+// * weight multiplies.
+static inline right_triangles make_right_triangles(wave_float t, wave_float t_leg, wave_float x,
+                                                   wave_float x_leg, wave_float q_plane, wave_float weight,
+                                                   float cutoff) {
   const wave_int swap = wave_mask(fabs(t_leg) < fabs(x_leg));
   const wave_float outer = wave_select(t, x, swap), outer_leg = wave_select(t_leg, x_leg, swap);
   const wave_float inner = wave_select(x, t, swap), inner_leg = wave_select(x_leg, t_leg, swap);
@@ -112,10 +115,12 @@ static inline right_triangles make_right_triangles(wave_float t, wave_float t_le
   return result;
 }
 
-static inline void list_right_triangles(right_triangles triangles, private integrator* out, WAVE_SHARED int* scratch) {
+static inline void list_right_triangles(right_triangles triangles, private integrator* out,
+                                        WAVE_SHARED int* scratch) {
   const float least = 1e-8f, short_most = 0.5f * SHORT_RANGE * EXP2_SCALE;
   const uint some = wave_ballot(wave_mask(triangles.y_slope > least), scratch);
-  const uint is_long = wave_ballot(wave_mask(triangles.y_slope > short_most), scratch), is_short = some & ~is_long;
+  const uint is_long = wave_ballot(wave_mask(triangles.y_slope > short_most), scratch),
+             is_short = some & ~is_long;
   if (is_short) append_right_triangles(triangles, is_short, &out->short_ones, &out->total, scratch);
   if (is_long) append_right_triangles(triangles, is_long, &out->long_ones, &out->total, scratch);
 }

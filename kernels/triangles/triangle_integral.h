@@ -1,21 +1,24 @@
-// The integral of a Gaussian over a triangle, sixteen at a time. [Yan14] Eq. 8, to single precision in all regimes.
+// The integral of a Gaussian over a triangle, sixteen at a time. [Yan14] Eq. 8, to single precision in all
+// regimes.
 //
-// On a triangle the normal is affine, so Q(u) = |W (u - mean)|^2 + |n(u) - h|^2 / sigma_r^2 is a quadratic and the
-// integrand exp(-Q/2) a 2D Gaussian. With R the 4-vector whose squared length is Q, R(u) = R0 + M (u - corner).
+// On a triangle the normal is affine, so Q(u) = |W (u - mean)|^2 + |n(u) - h|^2 / sigma_r^2 is a quadratic
+// and the integrand exp(-Q/2) a 2D Gaussian. With R the 4-vector whose squared length is Q, R(u) = R0 + M (u
+// - corner).
 //   - Triangles that are small beside the Gaussian: Gauss points of degree 2, 4 or 6.
-//   - All others: M is brought to triangular form (Gram-Schmidt), which whitens the Gaussian without squaring its
-//     condition number. The altitude on the longest edge cuts the whitened triangle into two right triangles whose
-//     legs are the axes; see right_triangles.h.
+//   - All others: M is brought to triangular form (Gram-Schmidt), which whitens the Gaussian without squaring
+//   its
+//     condition number. The altitude on the longest edge cuts the whitened triangle into two right triangles
+//     whose legs are the axes; see right_triangles.h.
 #ifndef MICA_TRIANGLE_INTEGRAL_H
 #define MICA_TRIANGLE_INTEGRAL_H
 
+#include "triangles/right_triangles.h"
 #include "wave/gaussian.h"
 #include "wave/quadrature.h"
-#include "triangles/right_triangles.h"
 #include "wave/wave.h"
 
-// R, or a difference of two: position in standard deviations of the footprint (1, 2: its axes), normal in standard
-// deviations of roughness (s, t).
+// R, or a difference of two: position in standard deviations of the footprint (1, 2: its axes), normal in
+// standard deviations of roughness (s, t).
 typedef struct {
   wave_float p1, p2, s, t;
 } residual;
@@ -48,7 +51,8 @@ static inline wave_float longest_edge_squared(affine_residual r) {
 // Integral of exp(-Q/2) over the unit right triangle by `count` Gauss points from row `first`.
 static inline wave_float integrate_by_points(affine_residual r, int first, int count) {
   const wave_float q0 = MINUS_HALF_LOG2_E * dot4(r.r0, r.r0);
-  const wave_float b1 = 2.0f * MINUS_HALF_LOG2_E * dot4(r.r0, r.m1), b2 = 2.0f * MINUS_HALF_LOG2_E * dot4(r.r0, r.m2);
+  const wave_float b1 = 2.0f * MINUS_HALF_LOG2_E * dot4(r.r0, r.m1),
+                   b2 = 2.0f * MINUS_HALF_LOG2_E * dot4(r.r0, r.m2);
   const wave_float a11 = MINUS_HALF_LOG2_E * dot4(r.m1, r.m1), a22 = MINUS_HALF_LOG2_E * dot4(r.m2, r.m2);
   const wave_float a12 = 2.0f * MINUS_HALF_LOG2_E * dot4(r.m1, r.m2);
   wave_float sum = 0.0f;
@@ -61,12 +65,14 @@ static inline wave_float integrate_by_points(affine_residual r, int first, int c
   return COUNTED(48 + 25 * count, sum);
 }
 
-// A triangle in whitened coordinates, turned so that t runs along its longest edge and x along the altitude on it.
+// A triangle in whitened coordinates, turned so that t runs along its longest edge and x along the altitude
+// on it.
 typedef struct {
   wave_float t_start, t_apex, t_end;
   wave_float x_base, altitude;
   wave_float q_plane;  // the part of Q that no point of the plane can undo
-  wave_float weight;   // sqrt(2 pi) / sqrt(det M^T M): what the standard Gaussian's integral is multiplied with
+  wave_float
+      weight;  // sqrt(2 pi) / sqrt(det M^T M): what the standard Gaussian's integral is multiplied with
 } whitened_triangle;
 
 static inline whitened_triangle whiten(affine_residual r) {
@@ -109,10 +115,11 @@ static inline whitened_triangle whiten(affine_residual r) {
   return result;
 }
 
-// Integrals of exp(-Q/2) over pairs of unit right triangles, in lanes where `valid` is set; the largest triangle of the
-// wave chooses the method. Pairs, because two independent chains of arithmetic take hardly longer than one.
-static inline void integrate_triangle_pairs(affine_residual a, affine_residual b, wave_int valid, float cutoff,
-                                            private integrator* out, WAVE_SHARED int* scratch) {
+// Integrals of exp(-Q/2) over pairs of unit right triangles, in lanes where `valid` is set; the largest
+// triangle of the wave chooses the method. Pairs, because two independent chains of arithmetic take hardly
+// longer than one.
+static inline void integrate_triangle_pairs(affine_residual a, affine_residual b, wave_int valid,
+                                            float cutoff, private integrator* out, WAVE_SHARED int* scratch) {
   const wave_float zero = 0.0f;
   const wave_float longest = max(longest_edge_squared(a), longest_edge_squared(b));
   const float longest2 = wave_max(wave_select(zero, longest, valid), scratch);
@@ -130,7 +137,8 @@ static inline void integrate_triangle_pairs(affine_residual a, affine_residual b
   v.q_plane = wave_select(cutoff + zero, min(v.q_plane, cutoff), valid);
 #define RIGHT(w, end) \
   make_right_triangles(w.t_apex, w.end - w.t_apex, w.x_base, w.altitude, w.q_plane, w.weight, cutoff)
-  const right_triangles u1 = RIGHT(u, t_start), u2 = RIGHT(u, t_end), v1 = RIGHT(v, t_start), v2 = RIGHT(v, t_end);
+  const right_triangles u1 = RIGHT(u, t_start), u2 = RIGHT(u, t_end), v1 = RIGHT(v, t_start),
+                        v2 = RIGHT(v, t_end);
 #undef RIGHT
   list_right_triangles(u1, out, scratch);
   list_right_triangles(u2, out, scratch);

@@ -1,7 +1,8 @@
 // `triangles`: the P-NDF of a footprint on a triangulated normal map. [Yan14] Eq. 6.
 //
-// One wave a query. Blocks of 64x64 texels under the footprint are culled sixteen children at a time: block -> tiles
-// of 16x16 -> leaves of 4x4 -> quads. The quads that remain gather in a list and are integrated sixteen at a time.
+// One wave a query. Blocks of 64x64 texels under the footprint are culled sixteen children at a time: block
+// -> tiles of 16x16 -> leaves of 4x4 -> quads. The quads that remain gather in a list and are integrated
+// sixteen at a time.
 
 #include "map/map_cull.h"
 #include "triangles/right_triangles.h"
@@ -14,8 +15,8 @@
 #define MICA_INTERPOLATION 1
 #endif
 
-// Sixteen quads: lower left corner in texels from the mean; normals less the half vector, in standard deviations of
-// roughness, at the corners 00, 10, 01, 11 (x first).
+// Sixteen quads: lower left corner in texels from the mean; normals less the half vector, in standard
+// deviations of roughness, at the corners 00, 10, 01, 11 (x first).
 typedef struct {
   wave_float x, y;
   wave_float s00, s10, s01, s11;
@@ -24,8 +25,8 @@ typedef struct {
 #define QUAD_SIZE (MICA_INTERPOLATION == 2 ? 0.25f : 1.0f)
 
 // Both triangles of each quad in lanes where `valid` is set; the diagonal runs from 10 to 01.
-static inline void integrate_quads(global const mica_map_query* query, private const quads* q, wave_int valid, private integrator* out,
-                                   WAVE_SHARED int* scratch) {
+static inline void integrate_quads(global const mica_map_query* query, private const quads* q, wave_int valid,
+                                   private integrator* out, WAVE_SHARED int* scratch) {
   const float w1x = QUAD_SIZE * query->whiten_1x, w1y = QUAD_SIZE * query->whiten_1y;
   const float w2x = QUAD_SIZE * query->whiten_2x, w2y = QUAD_SIZE * query->whiten_2y;
   affine_residual lower, upper;
@@ -57,8 +58,8 @@ static inline void integrate_first_quads(global const mica_map_query* query, pri
 }
 
 // Integrates the quads in `bits`: at once when all sixteen are, later in company when not.
-static inline void take_quads(global const mica_map_query* query, private const quads* q, uint bits, private wave_list* list,
-                              private integrator* out, WAVE_SHARED int* scratch) {
+static inline void take_quads(global const mica_map_query* query, private const quads* q, uint bits,
+                              private wave_list* list, private integrator* out, WAVE_SHARED int* scratch) {
   if (bits == 0xffffu) {
     integrate_quads(query, q, wave_mask(WAVE_LANE >= 0), out, scratch);
     return;

@@ -1,4 +1,5 @@
-// The two special functions of the P-NDF kernels, as plain multiply-add chains that vectorise on every device.
+// The two special functions of the P-NDF kernels, as plain multiply-add chains that vectorise on every
+// device.
 #ifndef MICA_GAUSSIAN_H
 #define MICA_GAUSSIAN_H
 
@@ -18,8 +19,8 @@ static inline wave_float gaussian_exp2(wave_float x) {
 // exp(-q / 2) = gaussian_exp2(-(EXP2_SCALE^2) q)
 #define EXP2_SCALE 0.84932180f  // sqrt(log2(e) / 2)
 
-// Phi(x) - 1/2 of the standard normal distribution at x = z / CDF_SCALE, absolute error 1.5e-7; odd, and exactly constant
-// for |x| >= 5.4.
+// Phi(x) - 1/2 of the standard normal distribution at x = z / CDF_SCALE, absolute error 1.5e-7; odd, and
+// exactly constant for |x| >= 5.4.
 #define CDF_SCALE 0.26189140f  // sqrt(2) / 5.4: z^2 - 1 runs over [-1, 1] where x runs over [0, 5.4]
 static inline wave_float gaussian_cdf_centred(wave_float z) {
   z = min(max(z, -1.41421356f), 1.41421356f);

@@ -1,14 +1,16 @@
 // Gaussian lobes as a query slices them: the last step of a mixture's sum, sixteen lobes at a time.
 //
-// A lobe is a long chain of dependent steps, longer than a processor looks ahead. So the sums of the mixtures have three leaves
-// under way at a time, each at its own step: one is loaded, the one before is sliced, and the one before that is added.
+// A lobe is a long chain of dependent steps, longer than a processor looks ahead. So the sums of the mixtures
+// have three leaves under way at a time, each at its own step: one is loaded, the one before is sliced, and
+// the one before that is added.
 #ifndef MICA_SLICE_H
 #define MICA_SLICE_H
 
 #include "wave/gaussian.h"
 #include "wave/wave.h"
 
-// exp(-(q_position + form / det) / 2) / sqrt(det), but for EXP2_SCALE^2, which both terms of the exponent have in them.
+// exp(-(q_position + form / det) / 2) / sqrt(det), but for EXP2_SCALE^2, which both terms of the exponent
+// have in them.
 typedef struct {
   wave_float q_position, form, det;
 } slice_wave;

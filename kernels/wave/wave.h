@@ -231,8 +231,8 @@ static inline void wave_pack(private float* list, uint bits, wave_float value) {
 #endif
 
 // wave_load_4x4 and its neighbours to the right and above.
-static inline void wave_load_quads(global const int* pointer, int row, private wave_int* v00, private wave_int* v10,
-                                   private wave_int* v01, private wave_int* v11) {
+static inline void wave_load_quads(global const int* pointer, int row, private wave_int* v00,
+                                   private wave_int* v10, private wave_int* v01, private wave_int* v11) {
   *v00 = wave_load_4x4(pointer, row), *v10 = wave_load_4x4(pointer + 1, row);
 #if MICA_WAVE_ITEMS
   *v01 = wave_load_4x4(pointer + row, row), *v11 = wave_load_4x4(pointer + row + 1, row);

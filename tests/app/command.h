@@ -17,7 +17,7 @@
 #include "tests/image/folder.h"
 
 /// What the tests of the command line share: the program, run in a folder of its own, and its input files.
-namespace mica::app {
+namespace mica::host::app {
 
 /// Bytes of a .npy file. @param shape as Python writes a tuple, "(3, 7)".
 inline std::string npy_bytes(const std::string& descr, bool fortran_order, const std::string& shape,
@@ -130,4 +130,4 @@ class CommandTest : public FolderTest {
   std::string log_folder_;
 };
 
-}  // namespace mica::app
+}  // namespace mica::host::app

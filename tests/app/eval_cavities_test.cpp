@@ -4,7 +4,7 @@
 
 #include "tests/app/command.h"
 
-namespace mica::app {
+namespace mica::host::app {
 namespace {
 
 class EvalCavities : public CommandTest {
@@ -78,4 +78,4 @@ TEST_F(EvalCavities, RefusesWhatItDoesNotTake) {
 }
 
 }  // namespace
-}  // namespace mica::app
+}  // namespace mica::host::app

@@ -5,7 +5,7 @@
 
 #include "tests/app/command.h"
 
-namespace mica::app {
+namespace mica::host::app {
 namespace {
 
 constexpr int kSomeFailed = 1, kUsage = 2;
@@ -115,4 +115,4 @@ TEST_F(FramesCommand, RefuseWhatTheJobHasNot) {
 }
 
 }  // namespace
-}  // namespace mica::app
+}  // namespace mica::host::app

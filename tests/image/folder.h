@@ -9,9 +9,9 @@
 #include <iterator>
 #include <string>
 
-#include "host/base/error.h"
+#include "mica/error.h"
 
-namespace mica {
+namespace mica::host {
 
 /// A fresh folder that is removed with everything in it.
 class FolderTest : public testing::Test {
@@ -46,4 +46,4 @@ class FolderTest : public testing::Test {
   std::filesystem::path folder_;
 };
 
-}  // namespace mica
+}  // namespace mica::host

@@ -12,11 +12,11 @@
 #include <string>
 #include <vector>
 
-#include "host/base/error.h"
 #include "host/image/image.h"
+#include "mica/error.h"
 #include "tests/image/folder.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 namespace fs = std::filesystem;
@@ -185,4 +185,4 @@ TEST_F(WriteImage, InconsistentImagesAreRefused) {
 }
 
 }  // namespace
-}  // namespace mica
+}  // namespace mica::host

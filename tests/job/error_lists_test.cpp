@@ -1,6 +1,6 @@
 #include "tests/job/job_text.h"
 
-namespace mica::test {
+namespace mica::host::test {
 namespace {
 
 std::string message_of(const JobFolder& folder, const std::string& text) {
@@ -8,7 +8,7 @@ std::string message_of(const JobFolder& folder, const std::string& text) {
     folder.load(text);
     return "";
   } catch (const UsageError& error) {
-    EXPECT_EQ(error.code(), ExitCode::usage);
+    EXPECT_EQ(error.kind(), ErrorKind::usage);
     return error.what();
   }
 }
@@ -156,11 +156,11 @@ TEST(Files, UnreadableJobIsAFileError) {
       load_job(folder.path(name), {});
       ADD_FAILURE() << name;
     } catch (const FileError& error) {
-      EXPECT_EQ(error.code(), ExitCode::file);
+      EXPECT_EQ(error.kind(), ErrorKind::file);
       EXPECT_EQ(std::string(error.what()).rfind(folder.path(name) + ": ", 0), 0u) << error.what();
     }
   }
 }
 
 }  // namespace
-}  // namespace mica::test
+}  // namespace mica::host::test

@@ -1,7 +1,7 @@
 // Frames and keyframes of a job.
 #include "tests/job/job_text.h"
 
-namespace mica::test {
+namespace mica::host::test {
 namespace {
 
 struct FramesOfAJob : testing::Test {
@@ -64,4 +64,4 @@ TEST_F(FramesOfAJob, ToneMapsHaveNames) {
 }
 
 }  // namespace
-}  // namespace mica::test
+}  // namespace mica::host::test

@@ -11,7 +11,7 @@
 
 #include "host/job/job.h"
 
-namespace mica::test {
+namespace mica::host::test {
 
 /// A folder of its own for one test, with a job file in it.
 class JobFolder {
@@ -76,4 +76,4 @@ inline std::string replaced(std::string text, const std::string& from, const std
   return text.replace(at, from.size(), to);
 }
 
-}  // namespace mica::test
+}  // namespace mica::host::test

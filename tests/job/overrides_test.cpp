@@ -1,6 +1,6 @@
 #include "tests/job/job_text.h"
 
-namespace mica::test {
+namespace mica::host::test {
 namespace {
 
 TEST(Overrides, ReplaceAndAddValues) {
@@ -121,4 +121,4 @@ TEST(Overrides, MayNotBringInFurtherLines) {
 }
 
 }  // namespace
-}  // namespace mica::test
+}  // namespace mica::host::test

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace mica::bench {
+namespace mica::host::bench {
 namespace {
 
 struct Pair {
@@ -85,4 +85,4 @@ TEST(DisplayDifference, SeesWhatIsDisplayed) {
 }
 
 }  // namespace
-}  // namespace mica::bench
+}  // namespace mica::host::bench

@@ -5,14 +5,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "host/base/error.h"
 #include "host/measure/point_samples.h"
 #include "host/measure/suite.h"
 #include "host/methods/make_evaluator.h"
 #include "host/reference/oracle.h"
 #include "host/verify/accuracy.h"
+#include "mica/error.h"
 
-namespace mica::bench {
+namespace mica::host::bench {
 namespace {
 
 TEST(Errors, AreRelativeToTheReferenceAndItsPeak) {
@@ -56,4 +56,4 @@ TEST(Suites, HaveNames) {
 }
 
 }  // namespace
-}  // namespace mica::bench
+}  // namespace mica::host::bench

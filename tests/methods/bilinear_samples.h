@@ -10,7 +10,7 @@
 #include "host/base/query.h"
 #include "host/surface/surface.h"
 
-namespace mica {
+namespace mica::host {
 
 /// Half vectors on a lattice, a roughness apart, over the normals that the texels within two standard
 /// deviations span.
@@ -85,4 +85,4 @@ inline double relative_l2(const std::vector<float>& densities, const std::vector
   return std::sqrt(squares / expected_squares);
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -6,14 +6,14 @@
 #include <cmath>
 #include <cstdio>
 
-#include "host/base/error.h"
 #include "host/methods/make_patch_brdf.h"
 #include "host/reference/beckmann_mixture.h"
 #include "host/surface/random.h"
+#include "mica/error.h"
 #include "tests/methods/gaussians/mixture_surfaces.h"
 #include "tests/statistics/chi_square.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 using reference::BeckmannMixture;
@@ -263,4 +263,4 @@ TEST(PatchBrdf, RefusesWhatItDoesNotTake) {
 }
 
 }  // namespace
-}  // namespace mica
+}  // namespace mica::host

@@ -9,7 +9,7 @@
 #include "host/device/device.h"
 #include "host/reference/random_numbers.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 using reference::random_bits;
@@ -131,4 +131,4 @@ TEST(RandomNumbers, ChangeAsAWholeWithEachBitOfTheKey) {
 }
 
 }  // namespace
-}  // namespace mica
+}  // namespace mica::host

@@ -6,11 +6,11 @@
 #include <boost/math/distributions/chi_squared.hpp>
 #include <numeric>
 
-#include "host/base/error.h"
 #include "host/reference/oracle.h"
 #include "host/surface/random.h"
+#include "mica/error.h"
 
-namespace mica::reference {
+namespace mica::host::reference {
 namespace {
 
 Surface random_surface(Interpolation interpolation) {
@@ -150,4 +150,4 @@ TEST(BinningCounts, BadSettingsAreRefused) {
 }
 
 }  // namespace
-}  // namespace mica::reference
+}  // namespace mica::host::reference

@@ -6,7 +6,7 @@
 
 #include "host/reference/cavity.h"
 
-namespace mica::reference {
+namespace mica::host::reference {
 namespace {
 
 constexpr double kDegree = M_PI / 180;
@@ -110,4 +110,4 @@ TEST(Cavity, TendsToTheMirrorsEnergy) {
 }
 
 }  // namespace
-}  // namespace mica::reference
+}  // namespace mica::host::reference

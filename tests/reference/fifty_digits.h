@@ -9,7 +9,7 @@
 
 #include "host/reference/query_frame.h"
 
-namespace mica::reference {
+namespace mica::host::reference {
 
 /// Integrals in 50-digit arithmetic, by another way than the oracle's: across the triangle's lines by the
 /// normal tail, along them by composite Gauss quadrature with twice as many panels as a first answer needed.
@@ -135,4 +135,4 @@ class FiftyDigits {
   }
 };
 
-}  // namespace mica::reference
+}  // namespace mica::host::reference

@@ -9,7 +9,7 @@
 
 #include "tests/reference/fifty_digits.h"
 
-namespace mica::reference {
+namespace mica::host::reference {
 namespace {
 
 constexpr double tolerance = 1e-10;
@@ -140,4 +140,4 @@ TEST(NearestSquared, OfConvexPolygons) {
 }
 
 }  // namespace
-}  // namespace mica::reference
+}  // namespace mica::host::reference

@@ -15,7 +15,7 @@
 #include "host/surface/random.h"
 #include "tests/reference/fifty_digits.h"
 
-namespace mica::reference {
+namespace mica::host::reference {
 namespace {
 
 using Number = FiftyDigits::Number;
@@ -171,4 +171,4 @@ TEST(OracleFiftyDigits, AgreesToTwelve) {
 }
 
 }  // namespace
-}  // namespace mica::reference
+}  // namespace mica::host::reference

@@ -9,13 +9,13 @@
 #include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
 
-#include "host/base/error.h"
 #include "host/reference/gaussian_triangle.h"
 #include "host/surface/interpolate.h"
 #include "host/surface/random.h"
+#include "mica/error.h"
 #include "tests/reference/fifty_digits.h"
 
-namespace mica::reference {
+namespace mica::host::reference {
 namespace {
 
 double random_number(int stream, std::uint64_t index) {
@@ -349,4 +349,4 @@ TEST(Oracle, RefusesWhatHasNoAnswer) {
 }
 
 }  // namespace
-}  // namespace mica::reference
+}  // namespace mica::host::reference

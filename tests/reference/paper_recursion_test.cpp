@@ -6,13 +6,13 @@
 #include <cmath>
 
 #include "bench/paper_triangle.h"
-#include "host/base/error.h"
 #include "host/reference/oracle.h"
 #include "host/surface/random.h"
+#include "mica/error.h"
 
 // A baseline is honest only if it computes what it claims to: the paper's algorithm is held to the oracle
 // here, to the accuracy that the paper's erf allows.
-namespace mica::bench {
+namespace mica::host::bench {
 namespace {
 
 /// Integral of exp(-Q/2) over the unit right triangle by midpoints of a fine lattice.
@@ -104,4 +104,4 @@ TEST(PaperRecursion, RefusesOtherSurfaces) {
 }
 
 }  // namespace
-}  // namespace mica::bench
+}  // namespace mica::host::bench

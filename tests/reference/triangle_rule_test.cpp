@@ -6,7 +6,7 @@
 
 #include "host/reference/triangle_batch.h"
 
-namespace mica::reference {
+namespace mica::host::reference {
 namespace {
 
 double factorial(int n) {
@@ -89,4 +89,4 @@ TEST(TriangleRules, KeepTheirTolerance) {
 }
 
 }  // namespace
-}  // namespace mica::reference
+}  // namespace mica::host::reference

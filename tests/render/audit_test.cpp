@@ -7,7 +7,7 @@
 
 #include "host/reference/oracle.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 Query query_at(double u) {
@@ -65,4 +65,4 @@ TEST(Audit, MeasuresAnErrorThatWasPutIn) {
 }
 
 }  // namespace
-}  // namespace mica
+}  // namespace mica::host

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <fstream>
 
-#include "host/base/error.h"
 #include "host/job/job.h"
 #include "host/render/render.h"
+#include "mica/error.h"
 #include "tests/temporary_path.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 std::string plane_job() {
@@ -90,4 +90,4 @@ TEST(ErrorChannel, IsRefusedWhereNothingIsKnownOfTheError) {
 }
 
 }  // namespace
-}  // namespace mica
+}  // namespace mica::host

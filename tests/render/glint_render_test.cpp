@@ -5,13 +5,13 @@
 #include <cmath>
 #include <fstream>
 
-#include "host/base/error.h"
 #include "host/image/image.h"
 #include "host/job/job.h"
 #include "host/render/render.h"
+#include "mica/error.h"
 #include "tests/temporary_path.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 const char* const kSun = "type = \"directional\"\ndirection = [0.3, 1.0, -0.8]";
@@ -149,4 +149,4 @@ TEST(GlintRender, PlansNothingButAKernel) {
 }
 
 }  // namespace
-}  // namespace mica
+}  // namespace mica::host

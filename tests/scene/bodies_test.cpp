@@ -7,15 +7,15 @@
 #include <map>
 #include <set>
 
-#include "host/base/error.h"
 #include "host/scene/curve.h"
 #include "host/scene/fork.h"
 #include "host/scene/geometry.h"
 #include "host/scene/jar.h"
 #include "host/scene/outline.h"
 #include "host/scene/spoon.h"
+#include "mica/error.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 using Eigen::Vector3d;
@@ -151,4 +151,4 @@ TEST(Bodies, RefuseWhatMakesNoSense) {
 }
 
 }  // namespace
-}  // namespace mica
+}  // namespace mica::host

@@ -9,7 +9,7 @@
 #include "host/scene/fresnel.h"
 #include "host/scene/shading.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 TEST(DielectricReflectance, HasItsClosedForms) {
@@ -119,4 +119,4 @@ TEST(GlintWeight, IsTheMicrofacetModelWithoutItsNdf) {
 }
 
 }  // namespace
-}  // namespace mica
+}  // namespace mica::host

@@ -6,11 +6,11 @@
 #include <random>
 
 #include "host/base/constants.h"
-#include "host/base/error.h"
 #include "host/scene/camera.h"
 #include "host/scene/geometry.h"
+#include "mica/error.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 using Eigen::Vector2d;
@@ -199,4 +199,4 @@ TEST(Geometry, RefusesShapesWithoutExtent) {
 }
 
 }  // namespace
-}  // namespace mica
+}  // namespace mica::host

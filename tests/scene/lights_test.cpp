@@ -9,7 +9,7 @@
 #include "host/scene/scene.h"
 #include "host/scene/shading.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 using Eigen::Vector3d;
@@ -113,4 +113,4 @@ TEST(AreaLights, PenumbraIsHalfLitInItsMiddle) {
 }
 
 }  // namespace
-}  // namespace mica
+}  // namespace mica::host

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <random>
 
-#include "host/base/error.h"
 #include "host/scene/geometry.h"
+#include "mica/error.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 using Eigen::Vector3d;
@@ -120,4 +120,4 @@ TEST(Placement, RefusesWhatMakesNoSense) {
 }
 
 }  // namespace
-}  // namespace mica
+}  // namespace mica::host

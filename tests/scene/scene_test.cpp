@@ -8,13 +8,13 @@
 #include <functional>
 
 #include "host/base/constants.h"
-#include "host/base/error.h"
 #include "host/microfacet/masking.h"
 #include "host/scene/camera.h"
 #include "host/scene/fresnel.h"
 #include "host/scene/scene.h"
+#include "mica/error.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 using Eigen::Vector2d;
@@ -339,4 +339,4 @@ TEST(Scene, RefusesWhatMakesNoSense) {
 }
 
 }  // namespace
-}  // namespace mica
+}  // namespace mica::host

@@ -10,7 +10,7 @@
 
 #include "host/scene/shell.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 using Eigen::Vector3d;
@@ -134,4 +134,4 @@ TEST_F(Shell, IsTheSameEveryTime) {
 }
 
 }  // namespace
-}  // namespace mica
+}  // namespace mica::host

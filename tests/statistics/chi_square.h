@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace mica::statistics {
+namespace mica::host::statistics {
 
 /// Significance of one of `tests` independent tests that together reject a true hypothesis with probability
 /// `alpha`. Sidak 1967.
@@ -114,4 +114,4 @@ inline ChiSquare chi_square_of_directions(const SphereBins& bins, const std::vec
   return chi_square(observed, expected);
 }
 
-}  // namespace mica::statistics
+}  // namespace mica::host::statistics

@@ -1,7 +1,7 @@
-#include "host/base/error.h"
+#include "mica/error.h"
 #include "tests/surface/map_statistics.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 BrushedSurface brushed(int resolution, double along, double across, double degrees = 0) {
@@ -78,4 +78,4 @@ TEST(Brushed, RefusesSettingsOutOfRangeAndWarns) {
 }
 
 }  // namespace
-}  // namespace mica
+}  // namespace mica::host

@@ -1,9 +1,9 @@
 // Scratches, dents and bumps: their numbers, shapes and slopes.
 #include "host/base/constants.h"
-#include "host/base/error.h"
+#include "mica/error.h"
 #include "tests/surface/map_statistics.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 template <typename Description>
@@ -249,4 +249,4 @@ TEST(Features, RefuseSettingsOutOfRange) {
 }
 
 }  // namespace
-}  // namespace mica
+}  // namespace mica::host

@@ -7,11 +7,11 @@
 #include <set>
 #include <utility>
 
-#include "host/base/error.h"
 #include "host/surface/disk.h"
 #include "host/surface/synthesis.h"
+#include "mica/error.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 FlakesSurface flakes(int resolution, double flake_size_texels, double alpha, std::uint64_t seed = 1) {
@@ -188,4 +188,4 @@ TEST(Flakes, RefuseSettingsOutOfRange) {
 }
 
 }  // namespace
-}  // namespace mica
+}  // namespace mica::host

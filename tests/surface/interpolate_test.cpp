@@ -6,7 +6,7 @@
 
 #include "host/surface/random.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 using Function = Eigen::Vector2d (*)(double x, double y);
@@ -148,4 +148,4 @@ TEST(Interpolate, CatmullRomWeightsFollowTheHermiteForm) {
 }
 
 }  // namespace
-}  // namespace mica
+}  // namespace mica::host

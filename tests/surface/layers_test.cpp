@@ -1,8 +1,8 @@
-#include "host/base/error.h"
 #include "host/surface/map_size.h"
+#include "mica/error.h"
 #include "tests/surface/map_statistics.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 SurfaceDescription brushed(int resolution) {
@@ -50,4 +50,4 @@ TEST(Layers, DoNotDependOnTheNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace mica
+}  // namespace mica::host

@@ -11,11 +11,11 @@
 #include <string>
 #include <vector>
 
-#include "host/base/error.h"
 #include "host/surface/surface.h"
+#include "mica/error.h"
 
 /// Small image files for the tests, written through OpenImageIO or byte by byte.
-namespace mica::test {
+namespace mica::host::test {
 
 /// A folder of its own for each test, removed with it.
 class MapImages : public ::testing::Test {
@@ -97,4 +97,4 @@ inline bool mentions(const std::vector<std::string>& lines, const std::string& w
   return false;
 }
 
-}  // namespace mica::test
+}  // namespace mica::host::test

@@ -13,7 +13,7 @@
 #include "host/surface/synthesis.h"
 
 /// What the tests of synthesis measure on square maps, resolution^2 texels, row v near 0 first.
-namespace mica {
+namespace mica::host {
 
 using Slopes = std::vector<Eigen::Vector2d>;
 
@@ -85,4 +85,4 @@ inline double autocorrelation(const Slopes& slopes, int size, int component, int
   return sum / squares;
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <functional>
 
-#include "host/base/error.h"
 #include "host/surface/disk.h"
 #include "host/surface/synthesis.h"
+#include "mica/error.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 using Slopes = std::vector<Eigen::Vector2d>;
@@ -196,4 +196,4 @@ TEST(Spectrum, WarnsOfCorrelationsThatTheGridBends) {
 }
 
 }  // namespace
-}  // namespace mica
+}  // namespace mica::host

@@ -5,12 +5,12 @@
 #include <cmath>
 #include <limits>
 
-#include "host/base/error.h"
 #include "host/surface/disk.h"
 #include "host/surface/export.h"
 #include "host/surface/random.h"
+#include "mica/error.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 using Normals = std::vector<Eigen::Vector2d>;
@@ -74,4 +74,4 @@ TEST(Random, IsUniformAndUncorrelated) {
 }
 
 }  // namespace
-}  // namespace mica
+}  // namespace mica::host

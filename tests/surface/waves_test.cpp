@@ -1,10 +1,10 @@
 #include <complex>
 
 #include "host/base/constants.h"
-#include "host/base/error.h"
+#include "mica/error.h"
 #include "tests/surface/map_statistics.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 WavesSurface waves(int resolution = 128, double patch_meters = 200, double time_seconds = 0) {
@@ -160,4 +160,4 @@ TEST(Waves, WarnOfSmallPatchesAndRefuseSettingsOutOfRange) {
 }
 
 }  // namespace
-}  // namespace mica
+}  // namespace mica::host

@@ -11,7 +11,7 @@
 #include "host/reference/beckmann_mixture.h"
 #include "host/reference/gaussian_mixture.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 constexpr int kResolution = 64;
@@ -108,4 +108,4 @@ INSTANTIATE_TEST_SUITE_P(Variants, MixtureWaves,
                          name_of);
 
 }  // namespace
-}  // namespace mica
+}  // namespace mica::host

@@ -10,7 +10,6 @@
 #include <limits>
 #include <set>
 
-#include "host/base/error.h"
 #include "host/methods/auto/cost_model.h"
 #include "host/methods/auto/sampled_error.h"
 #include "host/methods/gaussians/mixture_evaluator.h"
@@ -19,8 +18,9 @@
 #include "host/methods/pyramid/pyramid_evaluator.h"
 #include "host/methods/triangles/triangle_evaluator.h"
 #include "host/surface/random.h"
+#include "mica/error.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 constexpr double kFirstRoughness = 0.02;
@@ -356,4 +356,4 @@ double AutoEvaluator::device_seconds() const {
   return seconds;
 }
 
-}  // namespace mica
+}  // namespace mica::host

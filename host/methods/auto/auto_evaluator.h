@@ -10,7 +10,7 @@
 #include "host/methods/evaluator.h"
 #include "host/surface/surface.h"
 
-namespace mica {
+namespace mica::host {
 
 class PyramidEvaluator;
 class PyramidStore;
@@ -117,4 +117,4 @@ class AutoEvaluator : public Evaluator {
   std::vector<AutoChoice> choices_;
 };
 
-}  // namespace mica
+}  // namespace mica::host

@@ -3,7 +3,7 @@
 #include "host/methods/map/map_query.h"
 #include "kernels/types.h"
 
-namespace mica {
+namespace mica::host {
 
 double blocks_reached(const Query& query, int map_width, int map_height) {
   constexpr double reach = 4.3;  // of a mixture's cutoff, standard deviations
@@ -25,4 +25,4 @@ CostModel pyramid_cost() {
   return {365, 0, 1.42, 300};
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -3,7 +3,7 @@
 #include "host/base/query.h"
 #include "host/surface/description.h"
 
-namespace mica {
+namespace mica::host {
 
 /// Nanoseconds of one core, of a query, of one block of the map that its footprint reaches, and of one thing
 /// that is counted of it; and of building the structure, of a texel of the map. Measured on one machine: only
@@ -29,4 +29,4 @@ CostModel triangles_cost(Interpolation interpolation);
 /// By the elements.
 CostModel pyramid_cost();
 
-}  // namespace mica
+}  // namespace mica::host

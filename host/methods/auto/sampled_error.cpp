@@ -5,7 +5,7 @@
 #include <limits>
 #include <numeric>
 
-namespace mica {
+namespace mica::host {
 
 /// The squared error is a ratio of two means, whose deviation and skewness those of its linearisation are.
 /// Few queries may make most of the error, and a sample that misses them thinks itself precise: what is taken
@@ -41,4 +41,4 @@ SampledError sampled_error(const std::vector<float>& densities, const std::vecto
           error * std::exp(0.5 * deviation * (students + correction))};
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-namespace mica {
+namespace mica::host {
 
 /// The relative L2, sqrt(sum (D - ref)^2 / sum ref^2), of many queries, as a random sample of them tells it.
 struct SampledError {
@@ -16,4 +16,4 @@ struct SampledError {
 SampledError sampled_error(const std::vector<float>& densities, const std::vector<float>& expected,
                            double quantile);
 
-}  // namespace mica
+}  // namespace mica::host

@@ -14,7 +14,7 @@
 #include "host/surface/interpolate.h"
 #include "host/surface/random.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 bool above_horizon(const Eigen::Vector3d& direction) {
@@ -96,4 +96,4 @@ std::vector<Albedo> NormalMapBrdf::energy(const std::vector<ViewQuery>& queries)
   return albedos;
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -6,7 +6,7 @@
 #include "host/methods/patch_brdf.h"
 #include "host/surface/surface.h"
 
-namespace mica {
+namespace mica::host {
 
 /// Classic normal mapping, a baseline: a footprint has one normal n', that of the map at its middle, and
 /// f max(i.n', 0) = D(h) G(o, i) / (4 o.n') is a smooth microfacet BRDF about it: a Beckmann lobe of the
@@ -34,4 +34,4 @@ class NormalMapBrdf : public PatchBrdf {
   Surface surface_;
 };
 
-}  // namespace mica
+}  // namespace mica::host

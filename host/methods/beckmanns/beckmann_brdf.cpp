@@ -7,15 +7,15 @@
 #include <cmath>
 
 #include "host/base/constants.h"
-#include "host/base/error.h"
 #include "host/base/stopwatch.h"
 #include "host/methods/gaussians/mixture_evaluator.h"
 #include "host/methods/map/map_query.h"
 #include "host/microfacet/masking.h"
 #include "host/surface/disk.h"
 #include "host/surface/random.h"
+#include "mica/error.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 constexpr std::size_t kBatchQueries = 1 << 17;
@@ -221,4 +221,4 @@ std::vector<Albedo> BeckmannBrdf::energy(const std::vector<ViewQuery>& queries) 
   return albedos;
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -9,7 +9,7 @@
 #include "host/methods/make_patch_brdf.h"
 #include "host/methods/map/map_batches.h"
 
-namespace mica {
+namespace mica::host {
 
 /// `beckmanns`: the BRDF of a mixture of Beckmann lobes, [Che18] Eq. 7, without Fresnel:
 ///     f_P(o, i) = D_P(h) / (4 I(o) I(i)),    I(o) = A_P(o) / G1(o) = integral of <o, w> D_P(w) dw    (Eq.
@@ -58,4 +58,4 @@ class BeckmannBrdf : public PatchBrdf {
   std::optional<MapBatches<device_types::mica_patch_query>> patches_;   ///< the others
 };
 
-}  // namespace mica
+}  // namespace mica::host

@@ -6,7 +6,7 @@
 #include "host/base/stopwatch.h"
 #include "host/methods/map/map_query.h"
 
-namespace mica {
+namespace mica::host {
 
 BeckmannEvaluator::BeckmannEvaluator(Device& device, const Surface& surface, const MixtureSettings& settings)
     : cutoff_(cutoff_for(settings.cutoff_error)) {
@@ -31,4 +31,4 @@ std::unique_ptr<PendingDensities> BeckmannEvaluator::start(const std::vector<Que
   return batches_->start(std::move(lobe_queries));
 }
 
-}  // namespace mica
+}  // namespace mica::host

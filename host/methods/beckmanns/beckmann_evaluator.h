@@ -9,7 +9,7 @@
 #include "host/methods/map/map_batches.h"
 #include "host/surface/surface.h"
 
-namespace mica {
+namespace mica::host {
 
 /// `beckmanns`: a mixture of non-centred anisotropic Beckmann lobes. [Che18]; kernels/beckmanns/beckmanns.cl.
 class BeckmannEvaluator : public Evaluator {
@@ -30,4 +30,4 @@ class BeckmannEvaluator : public Evaluator {
   std::optional<MapBatches<device_types::mica_lobe_query>> batches_;
 };
 
-}  // namespace mica
+}  // namespace mica::host

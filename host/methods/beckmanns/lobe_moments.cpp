@@ -8,7 +8,7 @@
 #include "host/methods/gaussians/mixture.h"
 #include "host/surface/disk.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 constexpr int kCellReach =
@@ -122,4 +122,4 @@ Lobe to_lobe(const SlopeMoments& moments) {
   return lobe;
 }
 
-}  // namespace mica
+}  // namespace mica::host

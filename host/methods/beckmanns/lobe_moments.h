@@ -6,7 +6,7 @@
 #include "host/methods/beckmanns/lobes.h"
 #include "host/surface/surface.h"
 
-namespace mica {
+namespace mica::host {
 
 /// E[x], E[y], E[x^2], E[xy], E[y^2] of slopes.
 using SlopeMoments = Eigen::Matrix<double, 5, 1>;
@@ -21,4 +21,4 @@ std::vector<SlopeMoments> slope_moments(const Surface& surface, int elements, in
 /// The lobe with these moments.
 Lobe to_lobe(const SlopeMoments& moments);
 
-}  // namespace mica
+}  // namespace mica::host

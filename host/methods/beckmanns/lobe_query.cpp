@@ -7,7 +7,7 @@
 #include "host/methods/gaussians/mixture.h"
 #include "host/methods/map/map_query.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 constexpr double kLeastCosine = 1e-4;  // of a half vector; closer to the horizon there are no normals
@@ -66,4 +66,4 @@ device_types::mica_lobe_query to_lobe_query(const Query& query, const LobeWeight
   return result;
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -5,7 +5,7 @@
 #include "host/surface/description.h"
 #include "kernels/types.h"
 
-namespace mica {
+namespace mica::host {
 
 /// What the queries of one mixture of Beckmann lobes have in common.
 struct LobeGrid {
@@ -46,4 +46,4 @@ HalfSlope to_half_slope(const Eigen::Vector2d& half_vector);
 device_types::mica_lobe_query to_lobe_query(const Query& query, const LobeWeights& weights,
                                             const LobeGrid& lobes, double cutoff);
 
-}  // namespace mica
+}  // namespace mica::host

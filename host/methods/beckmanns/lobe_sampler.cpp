@@ -6,7 +6,7 @@
 #include "host/base/constants.h"
 #include "host/surface/random.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 constexpr double kSampleReach = 6.5;  // standard deviations
@@ -101,4 +101,4 @@ Eigen::Vector3d LobeSampler::draw(const Footprint& footprint, double roughness,
   return Eigen::Vector3d(-slope.x(), -slope.y(), 1).normalized();
 }
 
-}  // namespace mica
+}  // namespace mica::host

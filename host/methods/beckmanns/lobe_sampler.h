@@ -6,7 +6,7 @@
 
 #include "host/methods/beckmanns/lobe_query.h"
 
-namespace mica {
+namespace mica::host {
 
 /// The integer j that `uniform` picks with a probability in proportion to exp(-(j - mean)^2 / (2 sigma^2)).
 /// @param sigma at least 0.4; @param uniform in [0, 1).
@@ -41,4 +41,4 @@ class LobeSampler {
   LobeGrid grid_;
 };
 
-}  // namespace mica
+}  // namespace mica::host

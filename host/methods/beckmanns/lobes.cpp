@@ -8,12 +8,12 @@
 #include <cmath>
 #include <cstring>
 
-#include "host/base/error.h"
 #include "host/methods/beckmanns/lobe_moments.h"
 #include "host/methods/gaussians/mixture.h"
 #include "host/methods/gaussians/mixture_bound.h"
+#include "mica/error.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 using namespace device_types;
@@ -218,4 +218,4 @@ LobeStructure build_lobes(const Surface& surface, int elements) {
   return map;
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -8,7 +8,7 @@
 #include "host/surface/surface.h"
 #include "kernels/types.h"
 
-namespace mica {
+namespace mica::host {
 
 constexpr int kLargest16 = 32767;  ///< of what 16 bits with a sign hold
 
@@ -43,4 +43,4 @@ std::size_t lobe_structure_bytes(int width, int height, int elements);
 /// bicubic surface.
 LobeStructure build_lobes(const Surface& surface, int elements);
 
-}  // namespace mica
+}  // namespace mica::host

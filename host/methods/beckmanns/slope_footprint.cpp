@@ -5,7 +5,7 @@
 
 #include "host/methods/gaussians/mixture.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 constexpr double k = kPositionKernelVariance;
@@ -70,4 +70,4 @@ device_types::mica_slope_footprint to_slope_footprint(const LobeWeights& weights
   return result;
 }
 
-}  // namespace mica
+}  // namespace mica::host

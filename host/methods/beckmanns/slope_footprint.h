@@ -6,7 +6,7 @@
 #include "host/methods/beckmanns/slope_pyramid.h"
 #include "kernels/types.h"
 
-namespace mica {
+namespace mica::host {
 
 /// Variance, in spacings^2, that the weights of a pyramid's cells need at least: their sums then ripple by
 /// 2 exp(-2 pi^2 variance).
@@ -20,4 +20,4 @@ device_types::mica_slope_footprint to_slope_footprint(const LobeWeights& weights
                                                       const std::vector<SlopeLevel>& levels,
                                                       double least_variance);
 
-}  // namespace mica
+}  // namespace mica::host

@@ -9,7 +9,7 @@
 #include "host/methods/beckmanns/lobe_moments.h"
 #include "host/methods/gaussians/mixture.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 constexpr int kPlanes = 5;
@@ -175,4 +175,4 @@ std::size_t slope_pyramid_bytes(int width, int height, bool with_finest) {
   return bytes;
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -7,7 +7,7 @@
 #include "host/methods/beckmanns/lobes.h"
 #include "kernels/types.h"
 
-namespace mica {
+namespace mica::host {
 
 /// Variance of the Gaussian that a cell of the pyramid stands for, in its spacings^2, but for the finest
 /// level, that of the lobes: wider than their position kernel, so that 5e-5 is left of waves as short as a
@@ -41,4 +41,4 @@ SlopePyramid build_slope_pyramid(const LobeStructure& lobes, bool with_finest);
 /// Bytes that it would take for a grid of this many lobes.
 std::size_t slope_pyramid_bytes(int width, int height, bool with_finest);
 
-}  // namespace mica
+}  // namespace mica::host

@@ -6,13 +6,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "host/base/error.h"
 #include "host/base/stopwatch.h"
 #include "host/methods/beckmanns/lobe_sampler.h"
 #include "host/methods/map/map_query.h"
 #include "host/surface/random.h"
+#include "mica/error.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 using device_types::mica_cavity_query;
@@ -158,4 +158,4 @@ std::vector<BrdfSample> CavityBrdf::sample(const std::vector<SampleQuery>& queri
   return samples;
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -13,7 +13,7 @@
 #include "host/methods/patch_brdf.h"
 #include "host/surface/surface.h"
 
-namespace mica {
+namespace mica::host {
 
 /// "exact" and "table", in the order of LostEnergy.
 const std::vector<std::string>& lost_energy_names();
@@ -66,4 +66,4 @@ class CavityBrdf : public PatchBrdf {
   std::optional<MapBatches<device_types::mica_cavity_query>> energies_, draws_;
 };
 
-}  // namespace mica
+}  // namespace mica::host

@@ -7,7 +7,7 @@
 #include "host/methods/gaussians/mixture.h"
 #include "host/methods/map/map_query.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 constexpr double kLeastCosine = 1e-6;  // of views and lights; closer to the horizon they count as this far
@@ -75,4 +75,4 @@ device_types::mica_cavity_query to_cavity_query(const ViewQuery& query, const Ca
   return result;
 }
 
-}  // namespace mica
+}  // namespace mica::host

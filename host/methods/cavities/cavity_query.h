@@ -4,7 +4,7 @@
 #include "host/surface/description.h"
 #include "kernels/types.h"
 
-namespace mica {
+namespace mica::host {
 
 /// What the queries of one map of cavities have in common.
 struct CavityGrid {
@@ -35,4 +35,4 @@ device_types::mica_map_query to_cavity_query(const BrdfQuery& query, const Cavit
 device_types::mica_cavity_query to_cavity_query(const ViewQuery& query, const CavityGrid& cavities,
                                                 double cutoff);
 
-}  // namespace mica
+}  // namespace mica::host

@@ -5,7 +5,7 @@
 
 #include "host/base/constants.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 double normal_cdf(double x) {
@@ -50,4 +50,4 @@ double compensation(Compensation kind, const Eigen::Vector3d& view, const Eigen:
          (2 * kPi * sigma * sigma * share_in_unit_circle(view.head<2>().norm(), sigma));
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -6,7 +6,7 @@
 
 #include "host/base/cavities.h"
 
-namespace mica {
+namespace mica::host {
 
 /// "diffuse" and "specular", in the order of Compensation.
 const std::vector<std::string>& compensation_names();
@@ -24,4 +24,4 @@ double specular_lobe_sigma(double roughness);
 /// the unit circle, to 1e-6 for a radius up to 1.
 double share_in_unit_circle(double radius, double sigma);
 
-}  // namespace mica
+}  // namespace mica::host

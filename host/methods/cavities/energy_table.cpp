@@ -8,7 +8,7 @@
 
 #include "host/base/constants.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 constexpr double kReach = 6;          // standard deviations
@@ -111,4 +111,4 @@ double EnergyTable::energy(double alpha, double cosine) const {
   return (1 - f) * ((1 - g) * at[0] + g * at[1]) + f * ((1 - g) * at[kSide] + g * at[kSide + 1]);
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-namespace mica {
+namespace mica::host {
 
 /// What leaves V-shaped cavities after one bounce, E_1, where the slopes of their facets are an isotropic
 /// Gaussian about 0: a table over their roughness and the view's polar angle, filled by quadrature. [Che19]
@@ -26,4 +26,4 @@ class EnergyTable {
 /// E_1 averaged over facets with Gaussian slopes, to 1e-5.
 double mean_cavity_energy(double alpha, double cosine);
 
-}  // namespace mica
+}  // namespace mica::host

@@ -9,7 +9,7 @@
 #include "host/base/constants.h"
 #include "host/surface/disk.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 constexpr double kMaxSlope = 20;  // steeper facets would hide all others in a second moment
@@ -196,4 +196,4 @@ std::size_t footprint_energy_bytes(int width, int height) {
   return squares * 8 * sizeof(float) + sizeof(float) * EnergyTable::kSide * EnergyTable::kSide;
 }
 
-}  // namespace mica
+}  // namespace mica::host

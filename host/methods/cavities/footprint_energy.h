@@ -9,7 +9,7 @@
 #include "host/methods/cavities/footprint_pyramid.h"
 #include "host/surface/surface.h"
 
-namespace mica {
+namespace mica::host {
 
 /// Energy that one bounce inside V-shaped cavities loses under a footprint, from the moments of slopes alone:
 /// as if those of a square of texels were a Gaussian, with a roughness along each axis of their covariance.
@@ -48,4 +48,4 @@ class FootprintEnergy {
 /// Bytes of it for a map of this size.
 std::size_t footprint_energy_bytes(int width, int height);
 
-}  // namespace mica
+}  // namespace mica::host

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace mica {
+namespace mica::host {
 
 /// Averages of some numbers of a map over squares of 4, 8, ... texels, a mip map of which footprints of any
 /// shape are interpolated. @tparam kChannels numbers a texel.
@@ -121,4 +121,4 @@ class FootprintPyramid {
   std::vector<Level> levels_;
 };
 
-}  // namespace mica
+}  // namespace mica::host

@@ -7,10 +7,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "host/base/error.h"
 #include "host/methods/gaussians/mixture_bound.h"
+#include "mica/error.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 using namespace device_types;
@@ -114,4 +114,4 @@ std::size_t gaussian_mixture_bytes(int width, int height) {
          nodes * (MICA_MIXTURE_NODE_STRIDE - MICA_NODE_STRIDE) * sizeof(std::int16_t);
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -5,7 +5,7 @@
 #include "host/methods/map/map_structure.h"
 #include "host/surface/surface.h"
 
-namespace mica {
+namespace mica::host {
 
 /// Variance of a mixture's position kernel, in spacings^2: at half a spacing it has fallen to half its peak.
 /// [Yan16], [Che18] sec. 3.1.
@@ -23,4 +23,4 @@ MapStructure build_gaussian_mixture(const Surface& surface, int elements);
 /// Bytes that `build_gaussian_mixture` would take for a map of this size, with any number of elements.
 std::size_t gaussian_mixture_bytes(int width, int height);
 
-}  // namespace mica
+}  // namespace mica::host

@@ -5,7 +5,7 @@
 
 #include "kernels/types.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 using namespace device_types;
@@ -73,4 +73,4 @@ void store_bound(const std::vector<ElementMoments>& elements, const BoundUnits& 
   node[child + 112] = to_short(std::ceil(std::sqrt(variance.y()) / units.spread));
 }
 
-}  // namespace mica
+}  // namespace mica::host

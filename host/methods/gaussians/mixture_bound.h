@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace mica {
+namespace mica::host {
 
 /// What the bounds of a mixture know of one of its elements: mean and covariance on the disk or of slopes,
 /// without roughness.
@@ -26,4 +26,4 @@ struct BoundUnits {
 void store_bound(const std::vector<ElementMoments>& elements, const BoundUnits& units, int child,
                  std::int16_t* node);
 
-}  // namespace mica
+}  // namespace mica::host

@@ -7,7 +7,7 @@
 #include "host/methods/gaussians/mixture.h"
 #include "host/methods/map/map_query.h"
 
-namespace mica {
+namespace mica::host {
 
 GaussianEvaluator::GaussianEvaluator(Device& device, const Surface& surface, const MixtureSettings& settings)
     : interpolation_(surface.interpolation()),
@@ -31,4 +31,4 @@ std::unique_ptr<PendingDensities> GaussianEvaluator::start(const std::vector<Que
   return batches_->start(std::move(mixture_queries));
 }
 
-}  // namespace mica
+}  // namespace mica::host

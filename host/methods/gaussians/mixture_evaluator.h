@@ -7,7 +7,7 @@
 #include "host/methods/map/map_batches.h"
 #include "host/surface/surface.h"
 
-namespace mica {
+namespace mica::host {
 
 struct MixtureSettings {
   int elements = 1;  ///< a texel and axis, 1 to kMaxElements
@@ -39,4 +39,4 @@ class GaussianEvaluator : public Evaluator {
   std::optional<MapBatches<device_types::mica_mixture_query>> batches_;
 };
 
-}  // namespace mica
+}  // namespace mica::host

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "host/base/error.h"
 #include "host/microfacet/glint_masking.h"
+#include "mica/error.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 constexpr double kLeastCosine = 1e-6;  // as of scenes: closer to the horizon nothing is seen or lit
@@ -167,4 +167,4 @@ std::vector<Albedo> GridBrdf::energy(const std::vector<ViewQuery>& queries) {
   return albedos;
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -4,7 +4,7 @@
 #include "host/methods/patch_brdf.h"
 #include "host/scene/glints_description.h"
 
-namespace mica {
+namespace mica::host {
 
 /// The process that a material's glints are, where it has no textures.
 GlintGrid grid_of(const GlintsDescription& glints);
@@ -49,4 +49,4 @@ class GridBrdf : public PatchBrdf {
   double device_seconds_ = 0;
 };
 
-}  // namespace mica
+}  // namespace mica::host

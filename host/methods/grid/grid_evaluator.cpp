@@ -6,9 +6,9 @@
 #include <cmath>
 #include <deque>
 
-#include "host/base/error.h"
+#include "mica/error.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 double seconds_of(const cl::Event& event) {
@@ -118,4 +118,4 @@ void GridEvaluator::enqueue(GridBatch batch, std::size_t first, std::size_t coun
   }
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -9,7 +9,7 @@
 #include "host/methods/evaluator.h"
 #include "host/methods/grid/grid_query.h"
 
-namespace mica {
+namespace mica::host {
 
 /// Densities of glints, of all colours together and of each.
 class GridDensities : public PendingDensities {
@@ -59,4 +59,4 @@ class GridEvaluator : public Evaluator {
   cl::Kernel kernel_;
 };
 
-}  // namespace mica
+}  // namespace mica::host

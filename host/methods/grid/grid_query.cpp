@@ -10,7 +10,7 @@
 #include <cstring>
 #include <tuple>
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 using namespace device_types;
@@ -170,4 +170,4 @@ GridBatch to_grid_batch(const std::vector<Query>& queries, std::size_t first, st
   return batch;
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -8,7 +8,7 @@
 #include "host/base/query.h"
 #include "kernels/types.h"
 
-namespace mica {
+namespace mica::host {
 
 /// What a surface of glints without a map is made of. [Kem25] Table 1.
 struct GlintGrid {
@@ -43,4 +43,4 @@ struct GridBatch {
 GridBatch to_grid_batch(const std::vector<Query>& queries, std::size_t first, std::size_t count,
                         const std::vector<GlintPoint>& points);
 
-}  // namespace mica
+}  // namespace mica::host

@@ -6,7 +6,7 @@
 
 #include "host/methods/evaluator.h"
 
-namespace mica {
+namespace mica::host {
 
 /// Answers of several evaluators, put together in the order of the queries.
 class CollectedDensities : public PendingDensities {
@@ -33,4 +33,4 @@ class CollectedDensities : public PendingDensities {
   std::vector<float> densities_;
 };
 
-}  // namespace mica
+}  // namespace mica::host

@@ -7,7 +7,7 @@
 
 #include "kernels/images/image_types.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 using namespace device_types;
@@ -95,4 +95,4 @@ void ImageBatches::draw_batch(const mica_pyramid_query* queries, std::size_t cou
   });
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -7,7 +7,7 @@
 #include "host/methods/map/image_window.h"
 #include "kernels/pyramid/pyramid_types.h"
 
-namespace mica {
+namespace mica::host {
 
 /// Images of P-NDFs, element by element on the device: kernels/images/splat.h. An image depends on its
 /// footprint and the window alone, not on the batch it is in.
@@ -35,4 +35,4 @@ class ImageBatches {
   cl::Kernel kernel_;
 };
 
-}  // namespace mica
+}  // namespace mica::host

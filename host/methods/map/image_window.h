@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace mica {
+namespace mica::host {
 
 /// A square image over the disk of half vectors: pixels row by row from the top left, s to the right, t up.
 struct ImageWindow {
@@ -30,4 +30,4 @@ struct ImageWindow {
   }
 };
 
-}  // namespace mica
+}  // namespace mica::host

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 using device_types::mica_cavity_query;
@@ -206,4 +206,4 @@ template class MapBatches<mica_patch_query>;
 template class MapBatches<mica_pyramid_query>;
 template class MapBatches<mica_smooth_query>;
 
-}  // namespace mica
+}  // namespace mica::host

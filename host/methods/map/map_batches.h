@@ -10,7 +10,7 @@
 #include "kernels/pyramid/pyramid_types.h"
 #include "kernels/types.h"
 
-namespace mica {
+namespace mica::host {
 
 /// What every kernel on a map's structure needs to run: its buffers on the device, and queries fed in
 /// batches, sorted by where their footprints lie.
@@ -62,4 +62,4 @@ extern template class MapBatches<device_types::mica_patch_query>;
 extern template class MapBatches<device_types::mica_pyramid_query>;
 extern template class MapBatches<device_types::mica_smooth_query>;
 
-}  // namespace mica
+}  // namespace mica::host

@@ -9,7 +9,7 @@
 #include "host/base/constants.h"
 #include "host/methods/gaussians/mixture.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 constexpr double kUniformVariance = 0.8 * 0.8;  // of a footprint that sees all of the map alike, periods^2
@@ -234,4 +234,4 @@ double cutoff_for(double relative_error) {
   return -2 * std::log(relative_error);
 }
 
-}  // namespace mica
+}  // namespace mica::host

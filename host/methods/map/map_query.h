@@ -6,7 +6,7 @@
 #include "host/surface/description.h"
 #include "kernels/types.h"
 
-namespace mica {
+namespace mica::host {
 
 /// Why a query cannot be evaluated ("covariance is not positive definite"), or empty when it can. Evaluators
 /// on maps take roughness 1e-5 to 1, standard deviations from 1e-3 to 1e6 texels, half vectors in
@@ -60,4 +60,4 @@ device_types::mica_mixture_query to_mixture_query(const Query& query, const devi
 /// Cutoff that leaves out less than `relative_error` of the density's peak.
 double cutoff_for(double relative_error);
 
-}  // namespace mica
+}  // namespace mica::host

@@ -8,7 +8,7 @@
 
 #include "host/methods/map/normal_box.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 using namespace device_types;
@@ -133,4 +133,4 @@ MapStructure build_map_structure(const Surface& surface) {
   return map;
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -7,7 +7,7 @@
 #include "host/surface/surface.h"
 #include "kernels/types.h"
 
-namespace mica {
+namespace mica::host {
 
 /// A normal map as the kernels read it: fixed-point normals in blocks, and the two levels of their min-max
 /// hierarchy over (s, t). [Yan14] sec. 6, on the implicit grid: neither pointers nor positions are stored.
@@ -26,4 +26,4 @@ std::size_t map_structure_bytes(int width, int height);
 /// Builds in parallel; the bounds are those of the surface as it is interpolated, rounded outwards.
 MapStructure build_map_structure(const Surface& surface);
 
-}  // namespace mica
+}  // namespace mica::host

@@ -5,7 +5,7 @@
 
 #include "kernels/types.h"
 
-namespace mica {
+namespace mica::host {
 
 /// Smallest box around fixed-point normals; empty until something is added.
 struct NormalBox {
@@ -44,4 +44,4 @@ inline void store(const NormalBox& box, int child, std::int16_t* node) {
   node[child + 32] = floor16(box.t_min), node[child + 48] = ceil16(box.t_max);
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -5,7 +5,7 @@
 
 #include "host/surface/interpolate.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 /// Normals may change by this much, in cells, over a piece of a triangle.
@@ -215,4 +215,4 @@ std::vector<CellMoments> without_light_cells(const NormalCells& cells, std::vect
   return parts;
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -6,7 +6,7 @@
 #include "host/methods/pyramid/moments.h"
 #include "host/surface/surface.h"
 
-namespace mica {
+namespace mica::host {
 
 /// Square cells over the normals of a map.
 class NormalCells {
@@ -64,4 +64,4 @@ class BlockMoments {
 /// nearest: many cells hold only a texel's corner. Sums of moments stay what they are.
 std::vector<CellMoments> without_light_cells(const NormalCells& cells, std::vector<CellMoments> parts);
 
-}  // namespace mica
+}  // namespace mica::host

@@ -7,7 +7,7 @@
 
 #include "host/methods/map/normal_box.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 using namespace device_types;
@@ -312,4 +312,4 @@ ElementTree build_element_tree(const GroupShape& group, const std::vector<CellMo
   return tree;
 }
 
-}  // namespace mica
+}  // namespace mica::host

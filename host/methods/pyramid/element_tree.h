@@ -6,7 +6,7 @@
 #include "host/methods/pyramid/moments.h"
 #include "kernels/pyramid/pyramid_types.h"
 
-namespace mica {
+namespace mica::host {
 
 /// The tree over one group's elements, in the kernel's form, with children counted from the group's own
 /// first.
@@ -29,4 +29,4 @@ int record_stride(int record_bits);
 /// @param parts of all the group's blocks.
 ElementTree build_element_tree(const GroupShape& group, const std::vector<CellMoments>& parts);
 
-}  // namespace mica
+}  // namespace mica::host

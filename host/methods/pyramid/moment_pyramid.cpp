@@ -11,7 +11,7 @@
 #include "host/methods/pyramid/cell_moments.h"
 #include "host/methods/pyramid/element_tree.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 using namespace device_types;
@@ -213,4 +213,4 @@ PyramidLevels levels_that_fit(const Surface& surface, double cell_width, std::si
   return {cell_width, whole_map_block(surface.width(), surface.height(), kFinestBlock), false};
 }
 
-}  // namespace mica
+}  // namespace mica::host

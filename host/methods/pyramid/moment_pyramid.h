@@ -8,7 +8,7 @@
 #include "host/surface/surface.h"
 #include "kernels/pyramid/pyramid_types.h"
 
-namespace mica {
+namespace mica::host {
 
 /// How a level lies on its map.
 struct PyramidShape {
@@ -62,4 +62,4 @@ struct ElementCounts {
 };
 ElementCounts estimate_elements(const Surface& surface, double cell_width, int block);
 
-}  // namespace mica
+}  // namespace mica::host

@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-namespace mica {
+namespace mica::host {
 
 using Matrix2x4d = Eigen::Matrix<double, 2, 4>;
 
@@ -43,4 +43,4 @@ struct CellMoments {
   Moments moments;
 };
 
-}  // namespace mica
+}  // namespace mica::host

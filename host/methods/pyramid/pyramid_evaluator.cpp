@@ -13,7 +13,7 @@
 #include "host/surface/random.h"
 #include "host/verify/accuracy.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 /// Cells narrower than this would be more than a map has texels; so small a roughness goes to the texels.
@@ -228,4 +228,4 @@ double PyramidEvaluator::device_seconds() const {
   return (texels_ ? texels_->device_seconds() : 0) + (settings_.store ? 0 : store_->device_seconds());
 }
 
-}  // namespace mica
+}  // namespace mica::host

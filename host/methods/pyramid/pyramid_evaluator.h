@@ -11,7 +11,7 @@
 #include "host/methods/pyramid/pyramid_store.h"
 #include "host/surface/surface.h"
 
-namespace mica {
+namespace mica::host {
 
 struct PyramidSettings {
   PyramidPrecision precision;
@@ -92,4 +92,4 @@ class PyramidEvaluator : public Evaluator {
   std::unique_ptr<Evaluator> texels_, counting_texels_;
 };
 
-}  // namespace mica
+}  // namespace mica::host

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-namespace mica {
+namespace mica::host {
 
 PyramidLevelBatches::PyramidLevelBatches(Device& device, const PyramidLevel& level, WaveForm wave_form,
                                          std::size_t batch_queries)
@@ -30,4 +30,4 @@ PyramidLevelBatches::Batches PyramidLevelBatches::make_batches(bool count_elemen
                  wave_form_, batch_queries_);
 }
 
-}  // namespace mica
+}  // namespace mica::host

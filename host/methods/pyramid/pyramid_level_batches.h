@@ -9,7 +9,7 @@
 #include "host/methods/map/map_batches.h"
 #include "host/methods/pyramid/moment_pyramid.h"
 
-namespace mica {
+namespace mica::host {
 
 /// One level on the device, and queries fed to it in batches.
 class PyramidLevelBatches {
@@ -45,4 +45,4 @@ class PyramidLevelBatches {
   std::optional<Batches> counting_;  // on the same buffers
 };
 
-}  // namespace mica
+}  // namespace mica::host

@@ -8,7 +8,7 @@
 #include "host/methods/map/map_query.h"
 #include "host/methods/map/map_structure.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 /// Elements are culled one by one, and cost too little for the pyramid's rough cutoff to be worth its error.
@@ -124,4 +124,4 @@ std::vector<float> PyramidPainter::paint_queries(const std::vector<Query>& footp
   return images;
 }
 
-}  // namespace mica
+}  // namespace mica::host

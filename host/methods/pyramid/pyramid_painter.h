@@ -7,7 +7,7 @@
 #include "host/methods/map/image_batches.h"
 #include "host/methods/pyramid/pyramid_evaluator.h"
 
-namespace mica {
+namespace mica::host {
 
 /// Images of P-NDFs with the accuracy of `pyramid`, element by element into the image and not query by query:
 /// merged elements where the pyramid has a level for the footprint, pieces of the texels' triangles where it
@@ -38,4 +38,4 @@ class PyramidPainter {
   std::optional<ImageBatches> texels_;
 };
 
-}  // namespace mica
+}  // namespace mica::host

@@ -7,7 +7,7 @@
 #include "host/methods/map/map_query.h"
 #include "host/methods/pyramid/moment_pyramid.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 constexpr double kFirstRoughness = 0.02;  // whose cells are not narrower than asked for
@@ -90,4 +90,4 @@ device_types::mica_pyramid_query to_pyramid_query(const Query& query, const Pyra
   return result;
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -8,7 +8,7 @@
 #include "host/surface/description.h"
 #include "kernels/pyramid/pyramid_types.h"
 
-namespace mica {
+namespace mica::host {
 
 /// How closely `pyramid` merges. The defaults keep 1% relative L2.
 struct PyramidPrecision {
@@ -56,4 +56,4 @@ std::optional<PyramidShares> shares_of(const Query& query, int map_width, int ma
 device_types::mica_pyramid_query to_pyramid_query(const Query& query, const PyramidShape& level,
                                                   Interpolation interpolation, double cutoff, bool uniform);
 
-}  // namespace mica
+}  // namespace mica::host

@@ -4,7 +4,7 @@
 
 #include "host/base/stopwatch.h"
 
-namespace mica {
+namespace mica::host {
 
 std::size_t pyramid_levels_bytes(int map_width, int map_height) {
   constexpr std::size_t bytes_a_texel = 22, least = std::size_t{16} << 20;
@@ -65,4 +65,4 @@ double PyramidStore::device_seconds() const {
   return seconds;
 }
 
-}  // namespace mica
+}  // namespace mica::host

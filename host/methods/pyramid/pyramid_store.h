@@ -10,7 +10,7 @@
 #include "host/methods/pyramid/pyramid_level_batches.h"
 #include "host/surface/surface.h"
 
-namespace mica {
+namespace mica::host {
 
 /// What the levels of one width of cells may take; finer ones are not built. With the texels of a 2048^2 map
 /// that is 126 MiB.
@@ -48,4 +48,4 @@ class PyramidStore {
   std::map<std::pair<double, int>, PyramidLevelBatches> built_;
 };
 
-}  // namespace mica
+}  // namespace mica::host

@@ -7,7 +7,7 @@
 #include "host/base/constants.h"
 #include "host/base/stopwatch.h"
 
-namespace mica {
+namespace mica::host {
 namespace {}  // namespace
 
 SmoothEvaluator::SmoothEvaluator(Device& device, const Surface& surface, const MixtureSettings& settings) {
@@ -38,4 +38,4 @@ std::unique_ptr<PendingDensities> SmoothEvaluator::start(const std::vector<Query
   return batches_->start(std::move(smooth_queries));
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -10,7 +10,7 @@
 #include "host/methods/map/map_batches.h"
 #include "host/surface/surface.h"
 
-namespace mica {
+namespace mica::host {
 
 /// `smooth`: one Beckmann lobe a footprint, with the mean and the covariance of its slopes;
 /// kernels/smooth/smooth.cl.
@@ -33,4 +33,4 @@ class SmoothEvaluator : public Evaluator {
   std::optional<MapBatches<device_types::mica_smooth_query>> batches_;
 };
 
-}  // namespace mica
+}  // namespace mica::host

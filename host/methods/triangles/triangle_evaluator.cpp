@@ -6,7 +6,7 @@
 #include "host/base/stopwatch.h"
 #include "host/methods/map/map_query.h"
 
-namespace mica {
+namespace mica::host {
 
 TriangleEvaluator::TriangleEvaluator(Device& device, const Surface& surface, const TriangleSettings& settings)
     : interpolation_(surface.interpolation()), cutoff_(cutoff_for(settings.cutoff_error)) {
@@ -27,4 +27,4 @@ std::unique_ptr<PendingDensities> TriangleEvaluator::start(const std::vector<Que
   return batches_->start(std::move(map_queries));
 }
 
-}  // namespace mica
+}  // namespace mica::host

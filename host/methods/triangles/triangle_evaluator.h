@@ -8,7 +8,7 @@
 #include "host/surface/surface.h"
 #include "kernels/types.h"
 
-namespace mica {
+namespace mica::host {
 
 struct TriangleSettings {
   /// Weight, of the largest, at which culling may drop a texel. Many texels can lie just beyond the cutoff:
@@ -39,4 +39,4 @@ class TriangleEvaluator : public Evaluator {
   std::optional<MapBatches<device_types::mica_map_query>> batches_;
 };
 
-}  // namespace mica
+}  // namespace mica::host

@@ -7,15 +7,15 @@
 #include <cmath>
 #include <map>
 
-#include "host/base/error.h"
 #include "host/methods/auto/sampled_error.h"
 #include "host/methods/make_evaluator.h"
 #include "host/reference/oracle.h"
 #include "host/surface/random.h"
 #include "host/verify/accuracy.h"
+#include "mica/error.h"
 #include "tests/methods/bilinear_samples.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 Device& device() {
@@ -234,4 +234,4 @@ TEST(Auto, SamplesEveryClass) {
 }
 
 }  // namespace
-}  // namespace mica
+}  // namespace mica::host

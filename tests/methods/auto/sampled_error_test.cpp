@@ -8,7 +8,7 @@
 
 #include "host/surface/random.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 TEST(SampledError, IsTheRelativeL2) {
@@ -53,4 +53,4 @@ TEST(SampledError, BoundsHoldWhereFewQueriesMakeMostOfTheError) {
 }
 
 }  // namespace
-}  // namespace mica
+}  // namespace mica::host

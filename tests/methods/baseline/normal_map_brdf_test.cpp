@@ -8,7 +8,7 @@
 
 #include "host/surface/random.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 /// One normal everywhere, tilted by `angle` from +z towards +x.
@@ -84,4 +84,4 @@ TEST(NormalMapBrdf, DrawsFindTheSameAlbedoAsAQuadrature) {
 }
 
 }  // namespace
-}  // namespace mica
+}  // namespace mica::host

@@ -7,16 +7,16 @@
 #include <cstdio>
 #include <numeric>
 
-#include "host/base/error.h"
 #include "host/methods/beckmanns/beckmann_evaluator.h"
 #include "host/reference/beckmann_mixture.h"
 #include "host/surface/random.h"
 #include "host/verify/accuracy.h"
+#include "mica/error.h"
 #include "tests/methods/bilinear_samples.h"
 #include "tests/methods/gaussians/mixture_culling.h"
 #include "tests/methods/gaussians/mixture_surfaces.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 Device& device() {
@@ -153,4 +153,4 @@ TEST(Beckmanns, RefuseWhatTheyDoNotTake) {
 }
 
 }  // namespace
-}  // namespace mica
+}  // namespace mica::host

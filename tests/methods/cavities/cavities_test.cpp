@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "host/base/error.h"
 #include "host/methods/cavities/cavity_brdf.h"
 #include "host/reference/cavity.h"
+#include "mica/error.h"
 #include "tests/methods/cavities/cavity_cases.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 using namespace cavity_cases;
@@ -283,4 +283,4 @@ TEST(Cavities, RefuseWhatTheyDoNotTake) {
 }
 
 }  // namespace
-}  // namespace mica
+}  // namespace mica::host

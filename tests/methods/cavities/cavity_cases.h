@@ -10,7 +10,7 @@
 #include "host/surface/random.h"
 #include "host/surface/surface.h"
 
-namespace mica::cavity_cases {
+namespace mica::host::cavity_cases {
 
 struct Case {
   std::string name;
@@ -78,4 +78,4 @@ inline ViewQuery random_view(const Surface& surface, std::uint64_t n, double rou
           direction(89.99 * std::sqrt(uniform(4, n)), 360 * uniform(5, n)), roughness};
 }
 
-}  // namespace mica::cavity_cases
+}  // namespace mica::host::cavity_cases

@@ -8,15 +8,15 @@
 #include <numeric>
 
 #include "host/base/constants.h"
-#include "host/base/error.h"
 #include "host/methods/gaussians/mixture_evaluator.h"
 #include "host/reference/gaussian_mixture.h"
 #include "host/verify/accuracy.h"
+#include "mica/error.h"
 #include "tests/methods/bilinear_samples.h"
 #include "tests/methods/gaussians/mixture_culling.h"
 #include "tests/methods/gaussians/mixture_surfaces.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 Device& device() {
@@ -147,4 +147,4 @@ TEST(Gaussians, RefuseWhatTheyDoNotTake) {
 }
 
 }  // namespace
-}  // namespace mica
+}  // namespace mica::host

@@ -9,7 +9,7 @@
 #include "host/surface/random.h"
 #include "kernels/types.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 using device_types::MICA_MIXTURE_NODE_STRIDE;
@@ -91,4 +91,4 @@ TEST(MixtureBound, OfNoElementsIsEmpty) {
 }
 
 }  // namespace
-}  // namespace mica
+}  // namespace mica::host

@@ -10,7 +10,7 @@
 #include "host/methods/gaussians/mixture_evaluator.h"
 #include "tests/methods/bilinear_samples.h"
 
-namespace mica {
+namespace mica::host {
 
 /// Of the integral, culling at a weight of e drops at most e (1 - ln e): position and normal are four
 /// Gaussian numbers. It adds nothing.
@@ -33,4 +33,4 @@ inline void expect_culling_drops_little(const Surface& surface, Evaluator* evalu
   }
 }
 
-}  // namespace mica
+}  // namespace mica::host

@@ -9,7 +9,7 @@
 #include "host/surface/surface.h"
 #include "host/verify/accuracy.h"
 
-namespace mica {
+namespace mica::host {
 
 inline Surface mixture_spectrum(double rms_slope = 0.15) {
   return make_surface({"test", SpectrumSurface{256, rms_slope, 8, 3}, Interpolation::bilinear}, nullptr);
@@ -50,4 +50,4 @@ inline std::vector<std::vector<Query>> mixture_probes(const Surface& surface, do
   return all;
 }
 
-}  // namespace mica
+}  // namespace mica::host

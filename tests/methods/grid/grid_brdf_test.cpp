@@ -11,7 +11,7 @@
 #include "host/reference/glint_draws.h"
 #include "host/surface/random.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 class Random {
@@ -344,4 +344,4 @@ INSTANTIATE_TEST_SUITE_P(Distributions, GridBrdfTest,
                          testing::Values(Distribution::beckmann, Distribution::trowbridge_reitz), name_of);
 
 }  // namespace
-}  // namespace mica
+}  // namespace mica::host

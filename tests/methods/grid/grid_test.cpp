@@ -9,12 +9,12 @@
 #include <cmath>
 
 #include "host/base/constants.h"
-#include "host/base/error.h"
 #include "host/methods/grid/grid_evaluator.h"
 #include "host/reference/glint_grid.h"
 #include "host/surface/random.h"
+#include "mica/error.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 reference::GlintProcess process_of(const GlintGrid& grid) {
@@ -326,4 +326,4 @@ INSTANTIATE_TEST_SUITE_P(Distributions, Grid,
                          testing::Values(Distribution::beckmann, Distribution::trowbridge_reitz), name_of);
 
 }  // namespace
-}  // namespace mica
+}  // namespace mica::host

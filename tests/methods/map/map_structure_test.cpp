@@ -6,7 +6,7 @@
 
 #include "host/surface/interpolate.h"
 
-namespace mica {
+namespace mica::host {
 namespace {
 
 using namespace device_types;
@@ -115,4 +115,4 @@ TEST(MapStructure, TakesFortyMebibytesAtMostForA2048Map) {
 }
 
 }  // namespace
-}  // namespace mica
+}  // namespace mica::host
