@@ -1,9 +1,8 @@
 # A folder of host/ is a target, compiled in one or a few pieces: most of a file's compile time is the headers that
 # its neighbours include as well.
 
-# mica_folder(FOLDER [NOT_IN_LIBRARY]): host/FOLDER/*.cpp as objects, which mica_collect gives to a library.
+# mica_folder(FOLDER): host/FOLDER/*.cpp as objects, which mica_collect gives to a library.
 function(mica_folder folder)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "NOT_IN_LIBRARY" "" "")
   file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/host/${folder}/*.cpp)
   if(NOT sources)
     return()
@@ -14,9 +13,7 @@ function(mica_folder folder)
   # Types of an unnamed namespace have their linkage in the file that a unit includes as well as in the unit.
   target_compile_options(${name} PRIVATE -Wno-subobject-linkage)
   target_link_libraries(${name} PRIVATE mica_options mica_libraries)
-  if(NOT arg_NOT_IN_LIBRARY)
-    set_property(GLOBAL APPEND PROPERTY MICA_FOLDERS ${name})
-  endif()
+  set_property(GLOBAL APPEND PROPERTY MICA_FOLDERS ${name})
 endfunction()
 
 function(mica_collect library)

@@ -2,8 +2,8 @@
 #include <fmt/format.h>
 
 #include "host/app/commands.h"
-#include "host/app/interrupt.h"
 #include "host/app/output.h"
+#include "host/base/interrupt.h"
 #include "host/base/stopwatch.h"
 #include "host/image/image.h"
 #include "host/measure/suite.h"
@@ -18,15 +18,16 @@ struct BenchOptions {
   bool quiet = false;
 };
 
-int run(const BenchOptions& options) {
+int run(const BenchOptions& options, const MethodRegistry& methods) {
   for (const std::string& path : {options.json, options.html})
     if (!path.empty()) prepare_output(path);
   Device device(options.device);
   const Stopwatch watch;
-  const bench::Results results = bench::run_suite(options.suite, device, [&](const std::string& what) {
+  const auto progress = [&](const std::string& what) {
     check_interrupt();
     if (!options.quiet) fmt::print(stderr, "{:6.1f} s  {}\n", watch.seconds(), what);
-  });
+  };
+  const bench::Results results = bench::run_suite(options.suite, device, progress, methods);
   fmt::print("{}", bench_summary(results));
   if (!options.json.empty()) write_file_atomically(options.json, bench_json(results));
   if (!options.html.empty()) write_file_atomically(options.html, bench_page(results));
@@ -36,7 +37,7 @@ int run(const BenchOptions& options) {
 
 }  // namespace
 
-void add_bench(CLI::App& app, Command* chosen) {
+void add_bench(CLI::App& app, Command* chosen, const MethodRegistry& methods) {
   auto options = std::make_shared<BenchOptions>();
   CLI::App* command =
       app.add_subcommand("bench", "Measures every evaluator's speed and error, side by side in one run");
@@ -54,7 +55,7 @@ void add_bench(CLI::App& app, Command* chosen) {
       ->type_name("N")
       ->capture_default_str();
   command->add_flag("--quiet", options->quiet, "No progress");
-  command->callback([=] { *chosen = [=] { return run(*options); }; });
+  command->callback([=, &methods] { *chosen = [=, &methods] { return run(*options, methods); }; });
 }
 
 }  // namespace mica::host::app

@@ -30,8 +30,8 @@ std::optional<Estimate> try_estimate(const Job& job, const Plan& plan, int devic
   return estimate(job, plan, device);
 }
 
-int run(const CheckOptions& options) {
-  const Job job = load_job(options.job, options.overrides);
+int run(const CheckOptions& options, const MethodRegistry& methods) {
+  const Job job = load_job(options.job, options.overrides, methods);
   const Plan plan = make_plan(job);
   if (!options.json.empty()) prepare_output(options.json);
   const std::optional<Estimate> expected = try_estimate(job, plan, options.device);
@@ -45,14 +45,14 @@ int run(const CheckOptions& options) {
 
 }  // namespace
 
-void add_check(CLI::App& app, Command* chosen) {
+void add_check(CLI::App& app, Command* chosen, const MethodRegistry& methods) {
   auto options = std::make_shared<CheckOptions>();
   CLI::App* command = app.add_subcommand("check", "Validate a job and print its plan; render nothing");
   command->add_option("job", options->job, "Job file, TOML")->required();
   command->add_option("--set", options->overrides, "Override a setting: key.path=value, as often as needed");
   command->add_option("--device", options->device, "Number of the OpenCL device that the estimate is for");
   command->add_option("--json", options->json, "Write the plan and the estimate as JSON");
-  command->callback([=] { *chosen = [=] { return run(*options); }; });
+  command->callback([=, &methods] { *chosen = [=, &methods] { return run(*options, methods); }; });
 }
 
 }  // namespace mica::host::app

@@ -30,7 +30,7 @@ int run(const std::string& json_path) {
 
 }  // namespace
 
-void add_devices(CLI::App& app, Command* chosen) {
+void add_devices(CLI::App& app, Command* chosen, const MethodRegistry&) {
   auto json_path = std::make_shared<std::string>();
   CLI::App* command =
       app.add_subcommand("devices", "Lists the OpenCL devices, by the numbers that --device takes");

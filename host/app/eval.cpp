@@ -9,14 +9,11 @@
 #include "host/app/commands.h"
 #include "host/app/eval_patch.h"
 #include "host/app/evaluation.h"
-#include "host/app/grid_options.h"
 #include "host/app/json_file.h"
 #include "host/app/map_options.h"
+#include "host/app/method_options.h"
 #include "host/app/output.h"
 #include "host/image/image.h"
-#include "host/methods/cavities/cavity_brdf.h"
-#include "host/methods/make_patch_brdf.h"
-#include "host/methods/map/map_query.h"
 #include "host/tables/query_table.h"
 #include "mica/error.h"
 
@@ -27,11 +24,11 @@ using Clock = std::chrono::steady_clock;
 
 struct EvalOptions {
   MapOptions map;
-  GridOptions grid;
-  std::string quantity = "ndf", ndf, queries, output, json;
-  std::string masking = "exact", part = "all", compensation = "diffuse", energy = "exact";
-  std::optional<double> roughness, tolerance;
-  int device = 0, elements = 1;
+  MethodOptions method;
+  std::string quantity = "ndf", queries, output, json, part = "all";
+  std::optional<double> roughness;
+  std::uint64_t seed = 1;
+  int device = 0;
 };
 
 struct PhaseTimes {
@@ -45,49 +42,14 @@ double lap(Clock::time_point* start) {
   return seconds;
 }
 
-/// What is evaluated: glints on a grid, or a surface, which has to outlive its evaluator.
-struct Subject {
-  bool is_grid = false;
-  GlintGrid grid;
-  std::optional<Surface> surface;
-  SurfaceReport report;
-};
-
-Subject load_subject(const EvalOptions& options) {
-  Subject subject;
-  subject.is_grid = options.ndf == "grid";
-  if (subject.is_grid) {
-    subject.grid = to_glint_grid(options.grid);
-  } else {
-    if (options.map.path.empty()) throw UsageError(fmt::format("--ndf {} needs a --map", options.ndf));
-    subject.surface = load_map(options.map, &subject.report);
-  }
-  return subject;
-}
-
-nlohmann::json describe(const EvalOptions& options, const Subject& subject) {
-  if (subject.is_grid)
-    return {{"distribution", options.grid.distribution},
-            {"alpha", {subject.grid.alpha_x, subject.grid.alpha_y}},
-            {"density", subject.grid.density},
-            {"stretch", subject.grid.stretch},
-            {"seed", subject.grid.seed}};
-  return {{"file", options.map.path},
-          {"width", subject.surface->width()},
-          {"height", subject.surface->height()},
-          {"interpolation", options.map.interpolation},
-          {"notes", subject.report.notes},
-          {"warnings", subject.report.warnings}};
-}
-
-nlohmann::json summary(const EvalOptions& options, const Subject& subject, const OpenEvaluator& open,
+nlohmann::json summary(const EvalOptions& options, const EvalSubject& subject, const OpenEvaluator& open,
                        std::size_t count, const PhaseTimes& times) {
   nlohmann::json json;
   json["command"] = "eval";
   json["quantity"] = options.quantity;
-  json[subject.is_grid ? "glints" : "map"] = describe(options, subject);
+  json[subject.surface ? "map" : "glints"] = subject.description;
   json["evaluator"] = open.evaluator->name();
-  if (options.tolerance) json["tolerance"] = *options.tolerance;
+  if (options.method.tolerance) json["tolerance"] = *options.method.tolerance;
   if (nlohmann::json choices = describe_choices(open); !choices.empty()) json["auto"] = std::move(choices);
   json["device"] = open.device ? describe_device(open.device->info()) : nlohmann::json();
   json["device_bytes"] = open.evaluator->device_bytes();
@@ -99,49 +61,38 @@ nlohmann::json summary(const EvalOptions& options, const Subject& subject, const
   return json;
 }
 
-QueryTable read_queries(const EvalOptions& options) {
-  if (options.ndf == "grid")
-    return QueryTable(options.queries, options.grid.microroughness, "--microroughness");
-  return QueryTable(options.queries, options.roughness);
+/// Of methods with a roughness of their own, that is the rows' where the table has none.
+QueryTable read_queries(const EvalOptions& options, const MethodSettings& settings) {
+  if (!settings.own_roughness()) return QueryTable(options.queries, options.roughness);
+  const bool given = options.method.given("microroughness");
+  return QueryTable(options.queries, given ? settings.own_roughness() : std::nullopt, "--microroughness");
 }
 
 int run_patches(const EvalOptions& options) {
-  if (options.tolerance) throw UsageError("--tolerance is for --quantity ndf");
-  PatchEvaluation patches = {options.map,          options.quantity,  options.ndf,     options.queries,
-                             options.output,       options.json,      options.masking, options.part,
-                             options.roughness,    options.grid.seed, options.device,  options.elements,
-                             options.compensation, options.energy};
-  if (options.ndf == "grid") {
-    patches.glints = to_glints_description(options.grid);
-    patches.roughness = options.grid.microroughness;
-  }
-  return evaluate_patches(patches);
+  if (options.method.tolerance) throw UsageError("--tolerance is for --quantity ndf");
+  return evaluate_patches({options.map, options.method, options.quantity, options.queries, options.output,
+                           options.json, options.part, options.roughness, options.seed, options.device});
 }
 
 int run(const EvalOptions& options) {
   if (options.quantity != "ndf") return run_patches(options);
-  if (options.ndf == "cavities")
-    throw UsageError(
-        "--ndf cavities answers --quantity brdf, energy and sample; two normals a point are no P-NDF");
-  check_tolerance(options.ndf, options.tolerance);
+  const Method& method = method_of(options.method);
+  if (!method.traits().densities)
+    throw UsageError(fmt::format("--ndf {} answers --quantity brdf, energy and sample; it has no P-NDF",
+                                 options.method.name));
+  const std::unique_ptr<MethodSettings> settings = settings_of(options.method);
   check_extension(options.output, {".npy"});
   prepare_output(options.output);
   if (!options.json.empty()) prepare_output(options.json);
 
   PhaseTimes times;
   Clock::time_point start = Clock::now();
-  const QueryTable table = read_queries(options);
-  const Subject subject = load_subject(options);
-  table.check([&](const Query& query) {
-    return subject.is_grid ? grid_query_problem(query)
-                           : query_problem(query, subject.surface->width(), subject.surface->height());
-  });
+  const QueryTable table = read_queries(options, *settings);
+  const EvalSubject subject = load_subject(options.map, options.method, *settings);
+  table.check([&](const Query& query) { return method.query_problem(query, subject.map()); });
   times.load = lap(&start);
-  const OpenEvaluator open = subject.is_grid ? open_grid(subject.grid, options.device)
-                                             : open_evaluator(options.ndf, options.tolerance, options.device,
-                                                              *subject.surface, options.elements);
-  if (!subject.is_grid)
-    calibrate(open, *subject.surface, table.size(), [&](std::size_t row) { return table.query(row); });
+  const OpenEvaluator open = open_evaluator(method, *settings, options.device, subject.map());
+  calibrate(open, table.size(), [&](std::size_t row) { return table.query(row); });
   times.build = lap(&start);
   const std::vector<float> densities =
       evaluate_all(open.evaluator.get(), table.size(), [&](std::size_t row) { return table.query(row); });
@@ -156,38 +107,12 @@ int run(const EvalOptions& options) {
   return 0;
 }
 
-std::vector<std::string> evaluator_choices() {
-  std::vector<std::string> names = ndf_names();
-  names.insert(names.end(), {"grid", "cavities"});
-  return names;
-}
-
 void add_patch_options(CLI::App* command, EvalOptions* options) {
   std::vector<std::string> quantities = patch_quantities();
   quantities.insert(quantities.begin(), "ndf");
   command->add_option("--quantity", options->quantity, "What is evaluated")
       ->type_name("NAME")
       ->check(CLI::IsMember(quantities))
-      ->capture_default_str();
-  command
-      ->add_option("--masking", options->masking,
-                   "Of a BRDF: of every lobe under the footprint, of one lobe with their moments, or of the "
-                   "map's roughness")
-      ->type_name("NAME")
-      ->check(CLI::IsMember(masking_names()))
-      ->capture_default_str();
-  command
-      ->add_option("--energy", options->energy,
-                   "Of cavities, what one bounce loses: of every seed under the footprint, or by a table of "
-                   "roughness and angle")
-      ->type_name("NAME")
-      ->check(CLI::IsMember(lost_energy_names()))
-      ->capture_default_str();
-  command
-      ->add_option("--compensation", options->compensation,
-                   "Of cavities, where light goes that bounces more than once")
-      ->type_name("NAME")
-      ->check(CLI::IsMember(compensation_names()))
       ->capture_default_str();
   command->add_option("--part", options->part, "Light that bounced once, more often, or both")
       ->type_name("NAME")
@@ -197,7 +122,7 @@ void add_patch_options(CLI::App* command, EvalOptions* options) {
 
 }  // namespace
 
-void add_eval(CLI::App& app, Command* chosen) {
+void add_eval(CLI::App& app, Command* chosen, const MethodRegistry& methods) {
   auto options = std::make_shared<EvalOptions>();
   CLI::App* command = app.add_subcommand("eval", "Evaluates a table of queries: the batch engine bare");
   command->footer(
@@ -220,22 +145,14 @@ void add_eval(CLI::App& app, Command* chosen) {
       "loses\n"
       "  sample  u v cuu cuv cvv ox oy oz [roughness] -> ix iy iz pdf weight; pdf 0: nothing was drawn");
   add_map_options(command, &options->map);
-  add_grid_options(command, &options->grid);
   add_patch_options(command, options.get());
-  command->add_option("--ndf", options->ndf, "Evaluator; reference is the host in double precision")
-      ->required()
-      ->type_name("NAME")
-      ->check(CLI::IsMember(evaluator_choices()));
+  add_method_options(
+      command, methods, [](const MethodTraits&) { return true; }, &options->method);
+  add_tolerance_option(command, &options->method);
   command
       ->add_option("--roughness", options->roughness,
                    "Of all rows, 1e-5 to 1; a Beckmann alpha is sqrt(2) times this")
       ->type_name("SIGMA");
-  command
-      ->add_option("--tolerance", options->tolerance,
-                   "Relative error allowed: auto keeps it as relative L2 (default 0.01), triangles keeps "
-                   "1e-4, reference "
-                   "takes 1e-12 to 0.1")
-      ->type_name("ERROR");
   command->add_option("--queries", options->queries, "Table of queries, .npy or .csv")
       ->required()
       ->type_name("FILE");
@@ -244,13 +161,6 @@ void add_eval(CLI::App& app, Command* chosen) {
       ->add_option("--json", options->json,
                    "Writes what was done: map, device, bytes, seconds, queries a second")
       ->type_name("FILE");
-  command
-      ->add_option("--elements", options->elements,
-                   "Elements of a mixture, or seeds of cavities, a texel and axis: more are slower and "
-                   "closer to the map")
-      ->type_name("N")
-      ->check(CLI::Range(1, 4))
-      ->capture_default_str();
   command->add_option("--device", options->device, "OpenCL device, by its number in `mica devices`")
       ->type_name("N")
       ->capture_default_str();

@@ -13,9 +13,7 @@
 #include "host/app/output.h"
 #include "host/base/stopwatch.h"
 #include "host/image/image.h"
-#include "host/methods/cavities/cavity_brdf.h"
-#include "host/methods/grid/grid_brdf.h"
-#include "host/methods/make_patch_brdf.h"
+#include "host/methods/patch_brdf.h"
 #include "host/tables/patch_table.h"
 #include "mica/error.h"
 
@@ -25,18 +23,6 @@ namespace {
 PatchQuantity to_quantity(const std::string& name) {
   if (name == "energy") return PatchQuantity::energy;
   return name == "sample" ? PatchQuantity::sample : PatchQuantity::brdf;
-}
-
-PatchBrdfSettings to_settings(const PatchEvaluation& options) {
-  PatchBrdfSettings settings;
-  const auto index = [](const std::vector<std::string>& names, const std::string& name) {
-    return static_cast<int>(std::find(names.begin(), names.end(), name) - names.begin());
-  };
-  settings.masking = static_cast<Masking>(index(masking_names(), options.masking));
-  settings.compensation = static_cast<Compensation>(index(compensation_names(), options.compensation));
-  settings.energy = static_cast<LostEnergy>(index(lost_energy_names(), options.energy));
-  settings.elements = options.elements;
-  return settings;
 }
 
 float chosen_part(const std::string& part, float single, float multiple) {
@@ -104,61 +90,46 @@ const std::vector<std::string>& patch_quantities() {
   return names;
 }
 
-namespace {
-
-/// What is asked: a map, which has to outlive its BRDF, or glints without one.
-struct Patch {
-  std::optional<Surface> surface;
-  nlohmann::json description;
-
-  std::string problem(const ViewQuery& query) const {
-    if (surface) return view_problem(query, surface->width(), surface->height());
-    return grid_query_problem({query.footprint, Eigen::Vector2d::Zero(), query.roughness});
+EvalSubject load_subject(const MapOptions& map, const MethodOptions& method, const MethodSettings& settings) {
+  if (!method_of(method).traits().map) {
+    nlohmann::json description;
+    for (const SettingEntry& entry : list_settings(settings)) description[entry.key] = entry.value;
+    return {std::nullopt, description};
   }
-};
-
-Patch load_patch(const PatchEvaluation& options) {
-  if (options.glints)
-    return {std::nullopt,
-            {{"alpha", {options.glints->alpha.x(), options.glints->alpha.y()}},
-             {"density", options.glints->density},
-             {"stretch", options.glints->stretch}}};
+  if (map.path.empty()) throw UsageError(fmt::format("--ndf {} needs a --map", method.name));
   SurfaceReport report;
-  Surface surface = load_map(options.map, &report);
-  const nlohmann::json description = {
-      {"file", options.map.path},   {"width", surface.width()},
-      {"height", surface.height()}, {"interpolation", options.map.interpolation},
-      {"notes", report.notes},      {"warnings", report.warnings}};
+  Surface surface = load_map(map, &report);
+  const nlohmann::json description = {{"file", map.path},           {"width", surface.width()},
+                                      {"height", surface.height()}, {"interpolation", map.interpolation},
+                                      {"notes", report.notes},      {"warnings", report.warnings}};
   return {std::move(surface), description};
 }
 
-std::unique_ptr<PatchBrdf> make_brdf(const PatchEvaluation& options, const Patch& patch, Device& device) {
-  if (options.glints) return std::make_unique<GridBrdf>(device, *options.glints);
-  return make_patch_brdf(options.ndf, device, *patch.surface, to_settings(options));
-}
-
-}  // namespace
-
 int evaluate_patches(const PatchEvaluation& options) {
-  std::vector<std::string> names = patch_brdf_names();
-  names.emplace_back("grid");
-  if (std::find(names.begin(), names.end(), options.ndf) == names.end())
-    throw UsageError(fmt::format("--quantity {}: {} has no BRDF of its own; available: {}", options.quantity,
-                                 options.ndf, fmt::join(names, ", ")));
-  if (!options.glints && options.map.path.empty())
-    throw UsageError(fmt::format("--ndf {} needs a --map", options.ndf));
+  const Method& method = method_of(options.method);
+  if (!method.traits().brdf)
+    throw UsageError(fmt::format(
+        "--quantity {}: {} has no BRDF of its own; available: {}", options.quantity, method.name(),
+        fmt::join(options.method.methods->names([](const MethodTraits& traits) { return traits.brdf; }),
+                  ", ")));
+  if (method.traits().map && options.map.path.empty())
+    throw UsageError(fmt::format("--ndf {} needs a --map", method.name()));
+  const std::unique_ptr<MethodSettings> settings = settings_of(options.method);
   check_extension(options.output, {".npy"});
   prepare_output(options.output);
   if (!options.json.empty()) prepare_output(options.json);
 
   const Stopwatch loading;
-  const PatchTable table(options.queries, to_quantity(options.quantity), options.roughness);
-  const Patch patch = load_patch(options);
-  table.check([&](const ViewQuery& query) { return patch.problem(query); });
+  std::optional<double> roughness = options.roughness;
+  if (settings->own_roughness())
+    roughness = options.method.given("microroughness") ? settings->own_roughness() : std::nullopt;
+  const PatchTable table(options.queries, to_quantity(options.quantity), roughness);
+  const EvalSubject subject = load_subject(options.map, options.method, *settings);
+  table.check([&](const ViewQuery& query) { return view_problem(method, query, subject.map()); });
   const double load_seconds = loading.seconds();
   const Stopwatch building;
   Device device(options.device);
-  const std::unique_ptr<PatchBrdf> brdf = make_brdf(options, patch, device);
+  const std::unique_ptr<PatchBrdf> brdf = method.make_brdf(&device, subject.map(), *settings);
   const double build_seconds = building.seconds();
   const Stopwatch evaluating;
   const Answers answers = answer_all(options, table, brdf.get());
@@ -172,12 +143,12 @@ int evaluate_patches(const PatchEvaluation& options) {
              {{"command", "eval"},
               {"quantity", options.quantity},
               {"evaluator", brdf->name()},
-              {"masking", options.masking},
-              {"compensation", options.compensation},
-              {"energy", options.energy},
+              {"masking", options.method.text("masking", "exact")},
+              {"compensation", options.method.text("compensation", "diffuse")},
+              {"energy", options.method.text("energy", "exact")},
               {"part", options.part},
               {"seed", options.seed},
-              {options.glints ? "glints" : "map", patch.description},
+              {subject.surface ? "map" : "glints", subject.description},
               {"device", describe_device(device.info())},
               {"device_bytes", brdf->device_bytes()},
               {"seconds",

@@ -1,25 +1,35 @@
 #pragma once
 
 #include <cstdint>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "host/app/map_options.h"
-#include "host/scene/glints_description.h"
+#include "host/app/method_options.h"
+#include "host/surface/surface.h"
 
 namespace mica::host::app {
+
+/// What `mica eval` is about: a map, which has to outlive its evaluator, or glints without one.
+struct EvalSubject {
+  std::optional<Surface> surface;
+  nlohmann::json description;
+
+  const Surface* map() const { return surface ? &*surface : nullptr; }
+};
+EvalSubject load_subject(const MapOptions& map, const MethodOptions& method, const MethodSettings& settings);
 
 /// What `mica eval` was asked for about a patch BRDF.
 struct PatchEvaluation {
   MapOptions map;
-  std::string quantity, ndf, queries, output, json;  ///< quantity: one of patch_quantities()
-  std::string masking = "exact", part = "all";
+  MethodOptions method;
+  std::string quantity, queries, output, json;  ///< quantity: one of patch_quantities()
+  std::string part = "all";
   std::optional<double> roughness;
   std::uint64_t seed = 1;
-  int device = 0, elements = 1;
-  std::string compensation = "diffuse", energy = "exact";
-  std::optional<GlintsDescription> glints = {};  ///< of `grid`, which needs no map
+  int device = 0;
 };
 
 /// "brdf", "energy" and "sample".

@@ -204,7 +204,7 @@ void add_layers(CLI::App* map, Command* chosen) {
 
 }  // namespace
 
-void add_map(CLI::App& app, Command* chosen) {
+void add_map(CLI::App& app, Command* chosen, const MethodRegistry&) {
   CLI::App* map = app.add_subcommand("map", "Synthesises a normal map");
   map->require_subcommand(1);
   for (const auto add :

@@ -11,10 +11,10 @@
 #include "host/app/commands.h"
 #include "host/app/evaluation.h"
 #include "host/app/map_options.h"
+#include "host/app/method_options.h"
 #include "host/app/ndf_images.h"
 #include "host/app/output.h"
 #include "host/image/image.h"
-#include "host/methods/map/map_query.h"
 #include "host/tables/query_table.h"
 #include "mica/error.h"
 #include "mica/version.h"
@@ -24,10 +24,11 @@ namespace {
 
 struct NdfOptions {
   MapOptions map;
-  std::string ndf, output, centers;
+  MethodOptions method;
+  std::string output, centers;
   std::vector<double> center_uv, sigma, window = {0, 0, 1};
   double roughness = 0;
-  int size = 512, device = 0, elements = 1;
+  int size = 512, device = 0;
 };
 
 /// The footprint with standard deviations `sigma` = (a) or (a, b, degrees from +u to the axis of a), texels.
@@ -77,15 +78,16 @@ Image evaluate(const NdfOptions& options, const Surface& surface) {
   Query query;
   query.footprint = footprint(options, surface);
   query.roughness = options.roughness;
-  const std::string problem = query_problem(query, surface.width(), surface.height());
+  const std::string problem = method_of(options.method).query_problem(query, &surface);
   if (!problem.empty()) throw UsageError(problem);
 
-  const OpenEvaluator open = open_evaluator(options.ndf, {}, options.device, surface, options.elements);
+  const OpenEvaluator open =
+      open_evaluator(method_of(options.method), *settings_of(options.method), options.device, &surface);
   Image image;
   image.width = image.height = options.size;
   image.channels = {"ndf.Y"};
   image.pixels = draw_images(
-      open, surface, 1, [&](std::size_t) { return query; }, window);
+      open, 1, [&](std::size_t) { return query; }, window);
   const double share =
       std::accumulate(image.pixels.begin(), image.pixels.end(), 0.0) * window.step() * window.step();
   spdlog::info("the pixels hold {:.4g} of the normals (the sum of D over them, times a pixel's area)", share);
@@ -115,11 +117,12 @@ int run_centers(const NdfOptions& options) {
     return query;
   };
   check_rows(options.centers, centers.rows, [&](std::size_t row) {
-    return query_problem(footprint_of(row), surface.width(), surface.height());
+    return method_of(options.method).query_problem(footprint_of(row), &surface);
   });
-  const OpenEvaluator open = open_evaluator(options.ndf, {}, options.device, surface, options.elements);
+  const OpenEvaluator open =
+      open_evaluator(method_of(options.method), *settings_of(options.method), options.device, &surface);
   const ImageWindow window = window_of(options);
-  const std::vector<float> images = draw_images(open, surface, centers.rows, footprint_of, window);
+  const std::vector<float> images = draw_images(open, centers.rows, footprint_of, window);
   write_file_atomically(options.output, to_npy(images, window.count()));
   return 0;
 }
@@ -151,7 +154,7 @@ CLI::Option* add_numbers(CLI::App* command, const std::string& name, std::vector
 
 }  // namespace
 
-void add_ndf(CLI::App& app, Command* chosen) {
+void add_ndf(CLI::App& app, Command* chosen, const MethodRegistry& methods) {
   auto options = std::make_shared<NdfOptions>();
   CLI::App* command = app.add_subcommand("ndf", "One footprint's distribution of normals as an image");
   command->footer(
@@ -179,10 +182,9 @@ void add_ndf(CLI::App& app, Command* chosen) {
                    "Standard deviation of the intrinsic roughness on the disk, 1e-5 to 1")
       ->required()
       ->type_name("SIGMA");
-  command->add_option("--ndf", options->ndf, "Evaluator; reference is the host in double precision")
-      ->required()
-      ->type_name("NAME")
-      ->check(CLI::IsMember(ndf_names()));
+  add_method_options(
+      command, methods, [](const MethodTraits& traits) { return traits.map && traits.densities; },
+      &options->method);
   command->add_option("--size", options->size, "Pixels a side, 1 to 8192")
       ->type_name("N")
       ->check(CLI::Range(1, 8192))
@@ -192,12 +194,6 @@ void add_ndf(CLI::App& app, Command* chosen) {
   command->add_option("-o,--output", options->output, "The image, .exr or .png; with --centers .npy")
       ->required()
       ->type_name("FILE");
-  command
-      ->add_option("--elements", options->elements,
-                   "Elements of a mixture a texel and axis: more are slower and closer to the map")
-      ->type_name("N")
-      ->check(CLI::Range(1, 4))
-      ->capture_default_str();
   command->add_option("--device", options->device, "OpenCL device, by its number in `mica devices`")
       ->type_name("N")
       ->capture_default_str();

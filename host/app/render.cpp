@@ -8,9 +8,9 @@
 #include "host/app/commands.h"
 #include "host/app/exit_code.h"
 #include "host/app/frame_range.h"
-#include "host/app/interrupt.h"
 #include "host/app/output.h"
 #include "host/app/progress.h"
+#include "host/base/interrupt.h"
 #include "host/job/job.h"
 #include "host/render/render.h"
 #include "host/report/report.h"
@@ -107,9 +107,9 @@ class FrameLoop {
   std::optional<ExitCode> failed_;
 };
 
-int run(const RenderOptions& options) {
+int run(const RenderOptions& options, const MethodRegistry& methods) {
   const OutputNames names = output_names(options);
-  Job job = load_job(options.job, options.overrides);
+  Job job = load_job(options.job, options.overrides, methods);
   choose_frames(options.frames, &job.frames);
   const Plan plan = make_plan(job);
   Device device(options.device);
@@ -127,7 +127,7 @@ int run(const RenderOptions& options) {
 
 }  // namespace
 
-void add_render(CLI::App& app, Command* chosen) {
+void add_render(CLI::App& app, Command* chosen, const MethodRegistry& methods) {
   auto options = std::make_shared<RenderOptions>();
   CLI::App* command = app.add_subcommand("render", "Render the image of a job file");
   command->add_option("job", options->job, "Job file, TOML")->required();
@@ -140,7 +140,7 @@ void add_render(CLI::App& app, Command* chosen) {
   command->add_option("--device", options->device, "Number of the OpenCL device, see `mica devices`");
   command->add_option("--json", options->json, "Write what was done: plan, bytes, seconds, queries/s, audit");
   command->add_flag("--quiet", options->quiet, "No progress and no summary");
-  command->callback([=] { *chosen = [=] { return run(*options); }; });
+  command->callback([=, &methods] { *chosen = [=, &methods] { return run(*options, methods); }; });
 }
 
 }  // namespace mica::host::app

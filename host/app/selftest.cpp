@@ -7,11 +7,11 @@
 
 #include "host/app/commands.h"
 #include "host/app/exit_code.h"
-#include "host/app/interrupt.h"
 #include "host/app/json_file.h"
 #include "host/app/output.h"
+#include "host/base/interrupt.h"
 #include "host/methods/gaussians/mixture_evaluator.h"
-#include "host/methods/make_evaluator.h"
+#include "host/methods/standard.h"
 #include "host/reference/gaussian_mixture.h"
 #include "host/verify/accuracy.h"
 #include "host/verify/device_checks.h"
@@ -71,17 +71,22 @@ std::vector<std::vector<Query>> probes(const Surface& surface, double roughness)
   return all;
 }
 
-std::vector<Check> check_evaluator(const std::string& name, Device* device) {
+/// A method that promises to be the map's own density.
+std::vector<Check> check_promise(const Method& method, Device* device) {
   std::vector<Check> checks;
   for (const TestSurface& test : test_surfaces()) {
-    const std::unique_ptr<Evaluator> evaluator = make_evaluator(name, *device, test.surface);
+    if (!method.takes(test.surface.interpolation())) continue;
     const reference::Oracle oracle(test.surface, 1e-7);
+    const std::unique_ptr<MethodSettings> settings = method.settings();
+    const std::unique_ptr<Standard> standard = method.standard(&test.surface, &oracle, *settings);
+    if (!standard || !standard->is_the_map()) return {};
+    const std::unique_ptr<Evaluator> evaluator = method.make(device, &test.surface, *settings);
     for (const double roughness : {1e-4, 1e-3, 1e-2, 0.1}) {
       check_interrupt();
       const Accuracy accuracy =
-          compare(evaluator.get(), oracle, test.surface, probes(test.surface, roughness));
-      checks.push_back({fmt::format("{}: {}, roughness {}", name, test.name, roughness), accuracy.queries,
-                        accuracy.worst});
+          compare(evaluator.get(), *standard, test.surface, probes(test.surface, roughness));
+      checks.push_back({fmt::format("{}: {}, roughness {}", method.name(), test.name, roughness),
+                        accuracy.queries, accuracy.worst});
     }
   }
   return checks;
@@ -130,7 +135,7 @@ nlohmann::json to_json(const std::vector<Check>& checks) {
   return list;
 }
 
-int run(int device_index, double evaluations, const std::string& json_path) {
+int run(int device_index, double evaluations, const std::string& json_path, const MethodRegistry& methods) {
   if (!json_path.empty()) prepare_output(json_path);
   Device device(device_index);
   fmt::print("device {}: {}, {}\n\n", device_index, device.info().name, device.info().version);
@@ -145,13 +150,15 @@ int run(int device_index, double evaluations, const std::string& json_path) {
   const std::vector<FunctionError> arithmetic = measure_arithmetic(&device);
   take(arithmetic_checks(arithmetic));
   take(check_special_functions(&device));
-  take(check_evaluator("triangles", &device));
+  for (const auto& method : methods.all())
+    if (method->traits().compared && method->traits().map) take(check_promise(*method, &device));
   take(check_gaussians(&device));
   take(check_pyramid(&device));
   take(check_grid(&device));
 
   print_arithmetic(arithmetic);
-  const std::vector<HardResult> hard = print_hard_cases(&device, static_cast<std::uint64_t>(evaluations));
+  const std::vector<HardResult> hard =
+      print_hard_cases(&device, static_cast<std::uint64_t>(evaluations), methods);
 
   const bool failed =
       std::any_of(checks.begin(), checks.end(), [](const Check& check) { return check.failed(); }) ||
@@ -169,7 +176,7 @@ int run(int device_index, double evaluations, const std::string& json_path) {
 
 }  // namespace
 
-void add_selftest(CLI::App& app, Command* chosen) {
+void add_selftest(CLI::App& app, Command* chosen, const MethodRegistry& methods) {
   auto device_index = std::make_shared<int>(0);
   auto json_path = std::make_shared<std::string>();
   auto evaluations = std::make_shared<double>(0);
@@ -192,7 +199,9 @@ void add_selftest(CLI::App& app, Command* chosen) {
                    "Asks the hard cases on, until so many answers were looked at: 1e8 takes an hour or so")
       ->type_name("N")
       ->check(CLI::Range(0.0, 1e12));
-  command->callback([=] { *chosen = [=] { return run(*device_index, *evaluations, *json_path); }; });
+  command->callback([=, &methods] {
+    *chosen = [=, &methods] { return run(*device_index, *evaluations, *json_path, methods); };
+  });
 }
 
 }  // namespace mica::host::app

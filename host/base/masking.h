@@ -1,5 +1,8 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
 namespace mica::host {
 
 /// Where a patch BRDF's masking and projected areas come from.
@@ -8,5 +11,10 @@ enum class Masking {
   filtered,  ///< one lobe that has the moments of the footprint's slopes. [Che18] sec. 4.2.2
   geometric  ///< one roughness for the whole map, and cosines to the geometric normal. [Yan14] Eq. 1
 };
+
+/// The words of Masking, in its order.
+inline std::vector<std::string> masking_names() {
+  return {"exact", "filtered", "geometric"};
+}
 
 }  // namespace mica::host

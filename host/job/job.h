@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "host/image/image.h"
+#include "host/methods/registry.h"
 #include "host/scene/description.h"
 #include "host/surface/description.h"
 #include "mica/error.h"
@@ -35,7 +36,7 @@ struct AuditSettings {
 };
 
 struct AccuracySettings {
-  double tolerance = 0.01;  ///< relative L2 that materials with ndf = "auto" keep
+  double tolerance = 0.01;  ///< relative L2 that materials keep whose method takes one
 };
 
 /// A validated job: everything in range, every name resolved, every input file present.
@@ -49,6 +50,7 @@ struct Job {
   std::vector<SurfaceDescription> surfaces;
   AuditSettings audit;
   AccuracySettings accuracy;
+  MethodRegistry methods;  ///< that its materials name
 };
 
 /// One mistake in a job file or in an override.
@@ -79,6 +81,8 @@ class JobError : public UsageError {
 /// @throws FileError when `path` cannot be read; JobError with *all* issues otherwise. A file that the job
 /// names
 ///   and that is not there is an issue of the job, reported where it is named.
-Job load_job(const std::string& path, const std::vector<std::string>& overrides);
+/// @param methods that materials may name.
+Job load_job(const std::string& path, const std::vector<std::string>& overrides,
+             const MethodRegistry& methods = MethodRegistry::builtin());
 
 }  // namespace mica::host

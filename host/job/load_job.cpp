@@ -83,29 +83,40 @@ FrameSettings read_frames(TableReader& table) {
   return frames;
 }
 
+void give_tolerance(const Job& job, MaterialDescription* material) {
+  if (!job.methods.get(material->ndf).traits().keeps_tolerance) return;
+  std::unique_ptr<MethodSettings> settings = material->settings->clone();
+  settings->tolerance = job.accuracy.tolerance;
+  material->settings = std::move(settings);
+}
+
 void read_root(TableReader& table, Job& job) {
   table.read("seed", job.seed);
   table.read_table("image", [&](TableReader& image) { job.image = read_image(image); });
   table.read_table("frames", [&](TableReader& frames) { job.frames = read_frames(frames); });
   job.surfaces = read_surfaces(table);
-  job.scene = read_scene(table, job.surfaces);
+  job.scene = read_scene(table, job.surfaces, job.methods);
   table.read_table("accuracy", [&](TableReader& accuracy) {
     accuracy.read("tolerance", job.accuracy.tolerance, closed(5e-4, 0.5));
   });
+  for (MaterialDescription& material : job.scene.materials) give_tolerance(job, &material);
   table.read_table("audit",
                    [&](TableReader& audit) { audit.read("samples", job.audit.samples, closed(0, 1e6)); });
 }
 
 }  // namespace
 
-Job load_job(const std::string& path, const std::vector<std::string>& overrides) {
-  return read_job(read_text(path), path, overrides);
+Job load_job(const std::string& path, const std::vector<std::string>& overrides,
+             const MethodRegistry& methods) {
+  return read_job(read_text(path), path, overrides, methods);
 }
 
-Job read_job(const std::string& text, const std::string& path, const std::vector<std::string>& overrides) {
+Job read_job(const std::string& text, const std::string& path, const std::vector<std::string>& overrides,
+             const MethodRegistry& methods) {
   Issues issues(path);
   Job job;
   job.path = path;
+  job.methods = methods;
   job.hash = hash_of(text, overrides);
 
   toml::table root = parse_job(text, path, issues);

@@ -3,17 +3,13 @@
 #include <algorithm>
 
 #include "host/job/read_job.h"
+#include "host/job/toml_settings.h"
+#include "host/methods/registry.h"
 
 namespace mica::host {
 namespace {
 
 const Interval reflectance = closed(0, 1);
-const Choices<Masking> maskings = {
-    {"exact", Masking::exact}, {"filtered", Masking::filtered}, {"geometric", Masking::geometric}};
-const Choices<Compensation> compensations = {{"diffuse", Compensation::diffuse},
-                                             {"specular", Compensation::specular}};
-const Choices<LostEnergy> energies = {{"exact", LostEnergy::exact}, {"table", LostEnergy::table}};
-
 Fresnel read_conductor(TableReader& specular) {
   ConductorFresnel conductor;
   if (specular.require("eta", "it beside \"k\"")) specular.read("eta", conductor.eta, open_low(0, 100));
@@ -51,77 +47,88 @@ CoatDescription read_coat(TableReader& table) {
   return coat;
 }
 
-void read_evaluator(TableReader& material, std::string& ndf) {
-  const std::vector<std::string_view> available = {
-      "triangles", "gaussians", "beckmanns", "smooth", "cavities", "pyramid", "auto", "grid", "normalmap"};
-  const std::vector<std::string_view> planned = {"reference"};
+/// The method that `ndf` names; the default where it names none that there is.
+const Method& read_method(TableReader& material, std::string& ndf, const MethodRegistry& methods) {
+  const std::vector<std::string> available =
+      methods.names([](const MethodTraits& traits) { return traits.jobs; });
+  const std::vector<std::string_view> words(available.begin(), available.end());
   std::string word = ndf;
   material.read("ndf", word);
-  if (std::find(available.begin(), available.end(), word) != available.end()) {
+  const Method* const found = methods.find(word);
+  if (found != nullptr && found->traits().jobs) {
     ndf = word;
-    return;
+    return *found;
   }
-  const bool is_planned = std::find(planned.begin(), planned.end(), word) != planned.end();
-  material.report("ndf",
-                  fmt::format("found {}{}; expected an evaluator that is available: {}{}", in_quotes(word),
-                              is_planned ? ", which is not available in this version" : "", joined(available),
-                              did_you_mean(word, available)));
+  material.report(
+      "ndf", fmt::format("found {}{}; expected an evaluator that is available: {}{}", in_quotes(word),
+                         found != nullptr ? ", which is not available in this version" : "", joined(words),
+                         did_you_mean(word, words)));
+  return methods.get(ndf);
 }
 
 /// Mixtures have no lobes for Catmull-Rom patches.
-void refuse_bicubic(TableReader& table, const MaterialDescription& material,
-                    const std::vector<SurfaceDescription>& surfaces) {
-  for (const char* const any : {"triangles", "pyramid", "auto", "normalmap"})
-    if (material.ndf == any) return;
+void refuse_interpolation(TableReader& table, const MaterialDescription& material, const Method& method,
+                          const std::vector<SurfaceDescription>& surfaces) {
   for (const SurfaceDescription& surface : surfaces)
-    if (surface.name == material.surface && surface.interpolation == Interpolation::bicubic)
+    if (surface.name == material.surface && !method.takes(surface.interpolation))
       table.report("ndf",
                    fmt::format("found {} on surface {}, which is bicubic; expected a nearest or bilinear "
                                "surface, or triangles",
                                in_quotes(material.ndf), in_quotes(surface.name)));
 }
 
-void read_cavities(TableReader& table, MaterialDescription& material) {
-  table.read("compensation", material.compensation, compensations);
-  table.read("energy", material.energy, energies);
-  double spacing = 1;
-  table.read("spacing", spacing, open_low(0, 1));
-  if (spacing != 1 && spacing != 0.5)
-    table.report("spacing", fmt::format("found {}; expected 1 or 0.5 texels", spacing));
-  material.elements = spacing == 1 ? 1 : 2;
+bool has_map_and_densities(const Method& method) {
+  return method.traits().map && method.traits().densities;
+}
+
+/// The settings of the material's method. Keys of the other methods of a map's densities are read as well,
+/// and not used: a job tries another method by its name alone.
+std::shared_ptr<const MethodSettings> read_settings_of(TableReader& table, const Method& method,
+                                                       const MethodRegistry& methods) {
+  std::unique_ptr<MethodSettings> settings = method.settings();
+  std::vector<std::unique_ptr<MethodSettings>> unused;
+  TomlSettings reader(table);
+  settings->visit(reader);
+  if (has_map_and_densities(method))
+    for (const auto& other : methods.all())
+      if (has_map_and_densities(*other)) unused.emplace_back(other->settings())->visit(reader);
+  reader.read_files();
+  if (const MethodSettings::Problem problem = settings->problem(); !problem.message.empty())
+    table.report(problem.key, problem.message);
+  return settings;
+}
+
+void read_surface(TableReader& table, MaterialDescription& material,
+                  const std::vector<SurfaceDescription>& surfaces) {
+  std::vector<std::string_view> names;
+  for (const SurfaceDescription& surface : surfaces) names.push_back(surface.name);
+  table.require("surface", "the name of a surface");
+  table.read_reference("surface", material.surface, "surface", names);
+  table.read("roughness", material.roughness, closed(1e-4, 1));
 }
 
 }  // namespace
 
 std::vector<MaterialDescription> read_materials(TableReader& job,
-                                                const std::vector<SurfaceDescription>& surfaces) {
-  std::vector<std::string_view> surface_names;
-  for (const SurfaceDescription& surface : surfaces) surface_names.push_back(surface.name);
-
+                                                const std::vector<SurfaceDescription>& surfaces,
+                                                const MethodRegistry& methods) {
   std::vector<MaterialDescription> materials;
   job.read_named_tables("material", [&](TableReader& table) {
     MaterialDescription material;
     material.name = table.name();
     table.read("repeat", material.repeat, open_low(0, 1e6));
-    read_evaluator(table, material.ndf);
-    if (material.ndf == "grid") {
-      read_glints(table, material);
-    } else {
-      table.require("surface", "the name of a surface");
-      table.read_reference("surface", material.surface, "surface", surface_names);
-      table.read("roughness", material.roughness, closed(1e-4, 1));
-      refuse_bicubic(table, material, surfaces);
-      if (material.ndf == "cavities") {
-        read_cavities(table, material);
-      } else if (material.ndf != "normalmap") {
-        table.read("masking", material.masking, maskings);
-        table.read("elements", material.elements, closed(1, 4));
-      }
+    const Method& method = read_method(table, material.ndf, methods);
+    if (method.traits().map) {
+      read_surface(table, material, surfaces);
+      refuse_interpolation(table, material, method, surfaces);
     }
+    material.settings = read_settings_of(table, method, methods);
+    material.roughness = material.settings->own_roughness().value_or(material.roughness);
+    if (const GlintsDescription* const glints = material.settings->glints()) material.glints = *glints;
     table.read_table("specular", [&](TableReader& specular) { material.specular = read_specular(specular); });
     table.read("diffuse", material.diffuse, reflectance);
     table.read_table("coat", [&](TableReader& coat) { material.coat = read_coat(coat); });
-    if (material.coat && (material.ndf == "cavities" || material.ndf == "normalmap"))
+    if (material.coat && !method.traits().coat)
       table.report("coat",
                    fmt::format("found one on {}; expected none, or an ndf with a density", material.ndf));
     materials.push_back(std::move(material));

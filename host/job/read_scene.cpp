@@ -106,13 +106,14 @@ void read_background(TableReader& table, BackgroundDescription& background) {
 
 }  // namespace
 
-SceneDescription read_scene(TableReader& job, const std::vector<SurfaceDescription>& surfaces) {
+SceneDescription read_scene(TableReader& job, const std::vector<SurfaceDescription>& surfaces,
+                            const MethodRegistry& methods) {
   SceneDescription scene;
   job.read_table("camera", [&](TableReader& table) {
     read_camera(table, scene.camera);
     scene.camera_keys = read_keyframes(table, scene.camera, read_camera);
   });
-  scene.materials = read_materials(job, surfaces);
+  scene.materials = read_materials(job, surfaces, methods);
   std::vector<std::string_view> material_names;
   for (const MaterialDescription& material : scene.materials) material_names.push_back(material.name);
   job.read_table_array(

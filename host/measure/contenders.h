@@ -6,20 +6,21 @@
 
 #include "host/device/device.h"
 #include "host/methods/evaluator.h"
+#include "host/methods/registry.h"
 #include "host/surface/surface.h"
 
 namespace mica::host::bench {
 
-/// An evaluator of the registry with its knobs set.
+/// A method of the registry with its knobs set.
 struct Contender {
-  std::string evaluator;
-  int elements = 1;
+  std::string evaluator;  ///< name of the method
+  std::shared_ptr<const Method> method;
+  std::shared_ptr<const MethodSettings> settings;
   std::string label, knob;
 };
 
-/// Every evaluator that `make_evaluator` knows; those whose elements can be chosen once for each of
-/// `elements`.
-std::vector<Contender> contenders(const std::vector<int>& elements);
+/// Every method that is compared on maps; those whose elements can be chosen once for each of `elements`.
+std::vector<Contender> contenders(const MethodRegistry& methods, const std::vector<int>& elements);
 
 /// A contender on a surface, ready to answer.
 struct Prepared {

@@ -129,8 +129,8 @@ Picture render_with(const Prepared& prepared, const Crop& crop) {
 
 }  // namespace
 
-void render_pictures(int width, const std::vector<int>& elements, Device& device, const Progress& progress,
-                     Results* results) {
+void render_pictures(int width, const std::vector<Contender>& contenders, Device& device,
+                     const Progress& progress, Results* results) {
   progress("picture: reference");
   const Crop crop = trace_crop(width);
   std::vector<float> references;
@@ -146,7 +146,7 @@ void render_pictures(int width, const std::vector<int>& elements, Device& device
 
   progress("picture: brute force");
   const BruteForce brute_force(crop, results->reference_picture);
-  for (const Prepared& prepared : prepare(contenders(elements), device, crop.surface)) {
+  for (const Prepared& prepared : prepare(contenders, device, crop.surface)) {
     progress("picture: " + prepared.contender.label);
     if (prepared.evaluator)
       results->pictures.push_back(

@@ -87,11 +87,12 @@ struct Bench {
   reference::Oracle oracle;
   std::vector<Prepared> contenders;
 
-  Bench(const NamedSurface& named, int resolution, const std::vector<int>& elements, Device& device)
+  Bench(const NamedSurface& named, int resolution, const std::vector<int>& elements,
+        const MethodRegistry& methods, Device& device)
       : name(named.name),
         surface(make_surface(named.describe(resolution), nullptr)),
         oracle(surface, kOracleTolerance),
-        contenders(prepare(bench::contenders(elements), device, surface)) {}
+        contenders(prepare(bench::contenders(methods, elements), device, surface)) {}
 };
 
 Cell measure_cell(const Suite& suite, const Bench& bench, double reference_share, double sigma_texels,
@@ -113,11 +114,11 @@ Cell measure_cell(const Suite& suite, const Bench& bench, double reference_share
   return cell;
 }
 
-void measure_cells(const Suite& suite, const Machine& machine, Device& device, const Progress& progress,
-                   Results* results) {
+void measure_cells(const Suite& suite, const Machine& machine, const MethodRegistry& methods, Device& device,
+                   const Progress& progress, Results* results) {
   for (const NamedSurface& named : suite.surfaces) {
     progress(fmt::format("building {} of {} texels", named.name, suite.resolution));
-    const Bench bench(named, suite.resolution, suite.elements, device);
+    const Bench bench(named, suite.resolution, suite.elements, methods, device);
     for (const double sigma_texels : suite.sigmas_texels)
       for (const double roughness : suite.roughnesses)
         results->cells.push_back(
@@ -127,12 +128,12 @@ void measure_cells(const Suite& suite, const Machine& machine, Device& device, c
   }
 }
 
-void measure_map_sizes(const Suite& suite, const Machine& machine, Device& device, const Progress& progress,
-                       Results* results) {
+void measure_map_sizes(const Suite& suite, const Machine& machine, const MethodRegistry& methods,
+                       Device& device, const Progress& progress, Results* results) {
   constexpr double sigma_texels = 8, roughness = 0.005;
   for (const int size : suite.map_sizes) {
     progress(fmt::format("building spectrum of {} texels", size));
-    const Bench bench(kSpectrum, size, {1}, device);
+    const Bench bench(kSpectrum, size, {1}, methods, device);
     results->map_sizes.push_back(
         measure_cell(suite, bench, suite.reference_share / 8, sigma_texels, roughness, machine, progress));
   }
@@ -149,7 +150,8 @@ const std::vector<std::string>& suite_names() {
   return names;
 }
 
-Results run_suite(const std::string& name, Device& device, const Progress& progress) {
+Results run_suite(const std::string& name, Device& device, const Progress& progress,
+                  const MethodRegistry& methods) {
   const Stopwatch watch;
   const Suite suite = find_suite(name);
   Results results;
@@ -160,10 +162,10 @@ Results run_suite(const std::string& name, Device& device, const Progress& progr
   results.fma_peak = measure_fma_peak(device);
   results.bandwidth = measure_bandwidth(device);
   const Machine machine{results.fma_peak, results.bandwidth};
-  measure_cells(suite, machine, device, progress, &results);
-  measure_map_sizes(suite, machine, device, progress, &results);
+  measure_cells(suite, machine, methods, device, progress, &results);
+  measure_map_sizes(suite, machine, methods, device, progress, &results);
   results.grid = measure_grid(device, suite.effort, progress);
-  render_pictures(suite.picture_width, suite.elements, device, progress, &results);
+  render_pictures(suite.picture_width, contenders(methods, suite.elements), device, progress, &results);
   results.seconds = watch.seconds();
   return results;
 }

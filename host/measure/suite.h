@@ -14,6 +14,7 @@ const std::vector<std::string>& suite_names();
 
 /// Runs a suite on the device. Throws UsageError for a name that there is not, DeviceError, and what
 /// `progress` throws.
-Results run_suite(const std::string& name, Device& device, const Progress& progress);
+Results run_suite(const std::string& name, Device& device, const Progress& progress,
+                  const MethodRegistry& methods = MethodRegistry::builtin());
 
 }  // namespace mica::host::bench

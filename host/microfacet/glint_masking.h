@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "host/scene/glints_description.h"
+#include "host/base/glints_description.h"
 
 namespace mica::host {
 

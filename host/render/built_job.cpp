@@ -6,12 +6,7 @@
 #include <cmath>
 
 #include "host/base/stopwatch.h"
-#include "host/methods/auto/auto_evaluator.h"
-#include "host/methods/grid/grid_brdf.h"
-#include "host/methods/make_evaluator.h"
-#include "host/methods/make_patch_brdf.h"
 #include "host/methods/ndf_brdf.h"
-#include "host/render/glint_plan.h"
 #include "host/scene/keyframes.h"
 #include "host/surface/in_time.h"
 
@@ -40,7 +35,6 @@ BuiltJob::BuiltJob(const Job& job, const Plan& plan, Device& device)
       scene_(make_scene()) {
   const Stopwatch watch;
   evaluators_.resize(surfaces_.size());
-  glints_.resize(surfaces_.size());
   brdfs_.resize(surfaces_.size());
   for (std::size_t n = 0; n < surfaces_.size(); ++n) build_evaluator(n);
   build_seconds_ = watch.seconds();
@@ -51,61 +45,48 @@ void BuiltJob::build_evaluator(std::size_t n) {
   past_device_seconds_ += device_seconds_of(n);
   brdfs_[n].reset();  // buffers go before the new ones come
   evaluators_[n].reset();
-  glints_[n] = nullptr;
   if (planned.asks_densities) evaluators_[n] = make_density_evaluator(n);
   if (planned.patch_brdf || plan_.gathers_light) brdfs_[n] = make_brdf(n);
 }
 
 std::unique_ptr<PatchBrdf> BuiltJob::make_brdf(std::size_t n) const {
   const PlannedEvaluator& planned = plan_.evaluators[n];
-  if (planned.glints_material >= 0)
-    return std::make_unique<GridBrdf>(device_, *job_.scene.materials[planned.glints_material].glints);
-  if (planned.patch_brdf)
-    return make_patch_brdf(planned.evaluator, device_, *surfaces_[n],
-                           {planned.masking, planned.elements, planned.compensation, planned.energy});
-  // Of the densities, that of triangles alone is that of the surface's normals, and not an approximation.
-  const auto draws =
-      planned.evaluator == "triangles" ? NdfBrdf::Draws::surface_normals : NdfBrdf::Draws::smooth_lobe;
+  const Method& method = method_of(job_, planned);
+  const MethodTraits traits = method.traits();
+  if (traits.brdf) return method.make_brdf(&device_, surface(n), settings_of(job_, planned));
+  const auto draws = traits.surface_normals ? NdfBrdf::Draws::surface_normals : NdfBrdf::Draws::smooth_lobe;
   return std::make_unique<NdfBrdf>(*evaluators_[n], *surfaces_[n], draws);
 }
 
 std::unique_ptr<Evaluator> BuiltJob::make_density_evaluator(std::size_t n) {
   const PlannedEvaluator& planned = plan_.evaluators[n];
-  if (planned.glints_material >= 0) {
-    auto glints = make_glint_evaluator(job_.scene.materials[planned.glints_material], device_);
-    glints_[n] = glints.get();
-    return glints;
-  }
-  if (planned.evaluator == "auto") return calibrated_evaluator(n);
-  return make_evaluator(planned.evaluator, device_, *surfaces_[n], planned.elements);
+  std::unique_ptr<Evaluator> evaluator =
+      method_of(job_, planned).make(&device_, surface(n), settings_of(job_, planned));
+  if (method_of(job_, planned).traits().chooses) calibrate(n, evaluator.get());
+  return evaluator;
 }
 
-/// `auto`, calibrated with the queries of some rows of the image.
-std::unique_ptr<Evaluator> BuiltJob::calibrated_evaluator(std::size_t n) {
+/// A method that chooses among others looks at the queries of some rows of the image.
+void BuiltJob::calibrate(std::size_t n, Evaluator* evaluator) {
   constexpr int most_rows = 24;
-  const Surface& surface = *surfaces_[n];
   const int height = job_.image.height, rows = std::min(height, most_rows);
   std::vector<Query> queries;
   for (int row = 0; row < rows; ++row)
     for (const GlintQuery& glint : scene_.trace((2 * row + 1) * height / (2 * rows), 1).queries)
       if (plan_.evaluator_of_material[glint.material] == static_cast<int>(n)) queries.push_back(glint.query);
-  const double tolerance = job_.accuracy.tolerance;
   const bool for_one_frame = moves(job_.surfaces[plan_.evaluators[n].surface_index]);
   double scale = static_cast<double>(height) / rows;
   if (!for_one_frame) scale *= job_.frames.last - job_.frames.first + 1;
   if (plan_.gathers_light) scale *= 1 + job_.image.samples;
-  auto evaluator = std::make_unique<AutoEvaluator>(device_, surface, tolerance);
-  evaluator->calibrate(calibration_sample(
-      queries.size(), AutoEvaluator::kMostSamples, surface.width(), surface.height(),
-      [&](std::size_t k) { return queries[k]; }, scale));
+  evaluator->calibrate(
+      queries.size(), [&](std::size_t k) { return queries[k]; }, scale);
   for (const AutoChoice& choice : evaluator->choices())
-    notes_.push_back(
-        fmt::format("surface {}: auto takes {} for footprints of about {:.3g} texels: relative L2 {:.2g}, at "
-                    "most {:.2g} at 95% "
-                    "confidence by {} of the job's queries; tolerance {}",
-                    plan_.evaluators[n].surface, choice.evaluator, std::exp2(choice.kind.size),
-                    choice.relative_l2, choice.upper_bound, choice.samples, tolerance));
-  return evaluator;
+    notes_.push_back(fmt::format(
+        "surface {}: {} takes {} for footprints of about {:.3g} texels: relative L2 {:.2g}, at "
+        "most {:.2g} at 95% "
+        "confidence by {} of the job's queries; tolerance {}",
+        plan_.evaluators[n].surface, evaluator->name(), choice.evaluator, std::exp2(choice.kind.size),
+        choice.relative_l2, choice.upper_bound, choice.samples, job_.accuracy.tolerance));
 }
 
 void BuiltJob::go_to(int frame) {
@@ -221,25 +202,23 @@ PendingBlock::PendingBlock(TracedRows rows, const BuiltJob& built)
   }
   for (std::size_t n = 0; n < parts_.size(); ++n) {
     if (queries[n].empty()) continue;
-    if (built.glints(n)) {
-      start_glints(n, built, queries[n]);
-    } else {
+    if (built.job()
+            .scene.materials[static_cast<std::size_t>(built.plan().evaluators[n].first_material)]
+            .glints)
+      start_glints(&parts_[n], built, n, queries[n]);
+    else
       parts_[n].pending = built.evaluator(n).start(queries[n]);
-    }
   }
 }
 
-void PendingBlock::start_glints(std::size_t evaluator, const BuiltJob& built,
+void PendingBlock::start_glints(Part* part, const BuiltJob& built, std::size_t evaluator,
                                 const std::vector<Query>& queries) {
-  Part& part = parts_[evaluator];
   std::vector<GlintPoint> points;
   points.reserve(queries.size());
-  for (const std::size_t place : part.places) points.push_back(rows_.queries[place].glints);
-  std::unique_ptr<GridDensities> pending = built.glints(evaluator)->start(queries, points);
-  const int material = built.plan().evaluators[evaluator].glints_material;
-  part.colors = built.job().scene.materials[material].glints->colors;
-  if (!part.colors.empty()) part.glints = pending.get();
-  part.pending = std::move(pending);
+  for (const std::size_t place : part->places) points.push_back(rows_.queries[place].glints);
+  part->pending = built.evaluator(evaluator).start_at(queries, points);
+  const auto material = static_cast<std::size_t>(built.plan().evaluators[evaluator].first_material);
+  part->colors = built.job().scene.materials[material].glints->colors;
 }
 
 /// The mean colour of a query's glints goes into its weight.
@@ -247,7 +226,7 @@ void PendingBlock::tint(const Part& part, const std::vector<float>& densities) {
   for (std::size_t n = 0; n < densities.size(); ++n) {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     for (std::size_t color = 0; color < part.colors.size(); ++color)
-      sum += part.colors[color] * static_cast<double>(part.glints->density_of_color(color, n));
+      sum += part.colors[color] * static_cast<double>(part.pending->density_of_color(color, n));
     Eigen::Vector3f& weight = rows_.queries[part.places[n]].weight;
     if (densities[n] > 0) weight = weight.cwiseProduct((sum / densities[n]).cast<float>());
   }
@@ -259,7 +238,7 @@ std::vector<float> PendingBlock::wait() {
     if (!part.pending) continue;
     const std::vector<float> answers = part.pending->wait();
     for (std::size_t n = 0; n < answers.size(); ++n) densities[part.places[n]] = answers[n];
-    if (part.glints) tint(part, answers);
+    if (!part.colors.empty()) tint(part, answers);
   }
   return densities;
 }

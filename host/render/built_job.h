@@ -8,7 +8,6 @@
 #include "host/device/device.h"
 #include "host/job/job.h"
 #include "host/methods/evaluator.h"
-#include "host/methods/grid/grid_evaluator.h"
 #include "host/methods/patch_brdf.h"
 #include "host/render/plan.h"
 #include "host/scene/scene.h"
@@ -34,7 +33,6 @@ class BuiltJob {
   /// By PlannedEvaluator; of one that is a patch BRDF, and of all when light is gathered.
   PatchBrdf& brdf(std::size_t n) const { return *brdfs_[n]; }
   std::vector<const Surface*> surfaces() const;  ///< by PlannedEvaluator; null without a map
-  GridEvaluator* glints(std::size_t n) const { return glints_[n]; }  ///< the same; null with a map
 
   // Seconds that the latest frame took to build.
   double surface_seconds() const { return surface_seconds_; }
@@ -55,7 +53,8 @@ class BuiltJob {
   double device_seconds_of(std::size_t n) const;
   Scene make_scene();
   std::unique_ptr<Evaluator> make_density_evaluator(std::size_t n);
-  std::unique_ptr<Evaluator> calibrated_evaluator(std::size_t n);
+  void calibrate(std::size_t n, Evaluator* evaluator);
+  const Surface* surface(std::size_t n) const { return surfaces_[n] ? &*surfaces_[n] : nullptr; }
   std::unique_ptr<PatchBrdf> make_brdf(std::size_t n) const;
 
   const Job& job_;
@@ -68,7 +67,6 @@ class BuiltJob {
   std::vector<std::optional<Surface>> surfaces_;  // by PlannedEvaluator
   Scene scene_;
   std::vector<std::unique_ptr<Evaluator>> evaluators_;
-  std::vector<GridEvaluator*> glints_;  // those of evaluators_ that are
   std::vector<std::unique_ptr<PatchBrdf>> brdfs_;
 };
 
@@ -86,10 +84,10 @@ class PendingBlock {
   struct Part {
     std::vector<std::size_t> places;
     std::unique_ptr<PendingDensities> pending;
-    const GridDensities* glints = nullptr;  // `pending`, when it has colours
-    std::vector<Eigen::Vector3d> colors;
+    std::vector<Eigen::Vector3d> colors;  ///< that glints have
   };
-  void start_glints(std::size_t evaluator, const BuiltJob& built, const std::vector<Query>& queries);
+  void start_glints(Part* part, const BuiltJob& built, std::size_t evaluator,
+                    const std::vector<Query>& queries);
   void tint(const Part& part, const std::vector<float>& densities);
 
   TracedRows rows_;

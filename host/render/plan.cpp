@@ -6,14 +6,6 @@
 #include <algorithm>
 #include <set>
 
-#include "host/methods/beckmanns/lobes.h"
-#include "host/methods/beckmanns/slope_pyramid.h"
-#include "host/methods/cavities/footprint_energy.h"
-#include "host/methods/gaussians/mixture.h"
-#include "host/methods/make_patch_brdf.h"
-#include "host/methods/map/map_structure.h"
-#include "host/methods/pyramid/pyramid_evaluator.h"
-#include "host/render/glint_plan.h"
 #include "host/scene/scene.h"
 #include "host/surface/map_size.h"
 #include "kernels/types.h"
@@ -36,48 +28,25 @@ const char* name_of(Interpolation interpolation) {
   return "";
 }
 
-/// What the evaluator takes on the device, and its kernel.
-void plan_structure(PlannedEvaluator* planned) {
-  const int width = planned->width, height = planned->height, elements = planned->elements;
-  planned->kernel = planned->evaluator + ".cl";
-  if (planned->evaluator == "beckmanns") {
-    const std::size_t lobes = lobe_structure_bytes(width, height, elements);
-    planned->device_bytes = (planned->asks_densities ? 2 : 1) * lobes;
-    if (planned->masking != Masking::geometric) {
-      planned->device_bytes += slope_pyramid_bytes(width * elements, height * elements, false);
-      planned->kernel = "beckmann_patches.cl";
-    }
-  } else if (planned->evaluator == "smooth") {
-    planned->device_bytes = slope_pyramid_bytes(width * elements, height * elements, true);
-  } else if (planned->evaluator == "cavities") {
-    planned->device_bytes = map_structure_bytes(width, height);
-    if (planned->energy == LostEnergy::table) planned->host_bytes += footprint_energy_bytes(width, height);
-    planned->kernel += fmt::format(" -DMICA_INTERPOLATION={} -DMICA_SEEDS={}",
-                                   static_cast<int>(planned->interpolation), elements);
-  } else if (planned->evaluator == "normalmap") {
-    planned->host_bytes *= 2;  // keeps the map, and needs no device
-    planned->kernel = "none";
-  } else if (planned->evaluator == "pyramid" || planned->evaluator == "auto") {
-    planned->device_bytes =
-        map_structure_bytes(width, height) + pyramid_levels_bytes(width, height);  // at most
-    if (planned->evaluator == "auto") planned->kernel = "chosen from a sample of the job's queries";
-  } else {
-    planned->device_bytes = planned->evaluator == "gaussians" ? gaussian_mixture_bytes(width, height)
-                                                              : map_structure_bytes(width, height);
-    planned->kernel += fmt::format(" -DMICA_INTERPOLATION={}", static_cast<int>(planned->interpolation));
-  }
+void check_gathering(const MaterialDescription& material, const Method& method) {
+  const MethodSettings::Problem problem = method.gathering_problem(*material.settings);
+  if (!problem.message.empty())
+    throw UsageError(fmt::format("material.{}.{}: {}", material.name, problem.key, problem.message));
 }
 
-PlannedEvaluator plan_evaluator(const Job& job, int surface_index, const MaterialDescription& material) {
-  const SurfaceDescription& surface = job.surfaces[surface_index];
-  const MapSize size = map_size(surface);
+PlannedEvaluator plan_evaluator(const Job& job, int surface_index, int material_index, bool gathers) {
+  const MaterialDescription& material = job.scene.materials[static_cast<std::size_t>(material_index)];
+  const Method& method = job.methods.get(material.ndf);
+  const MethodTraits traits = method.traits();
   PlannedEvaluator planned;
-  planned.surface = surface.name;
   planned.evaluator = material.ndf;
-  planned.elements = material.elements, planned.masking = material.masking;
-  planned.compensation = material.compensation, planned.energy = material.energy;
-  const std::vector<std::string>& patches = patch_brdf_names();
-  planned.patch_brdf = std::find(patches.begin(), patches.end(), material.ndf) != patches.end();
+  planned.first_material = material_index;
+  planned.patch_brdf = traits.lit_by_brdf;
+  planned.gathers = gathers;
+  if (!traits.map) return planned;
+  const SurfaceDescription& surface = job.surfaces[static_cast<std::size_t>(surface_index)];
+  const MapSize size = map_size(surface);
+  planned.surface = surface.name;
   planned.surface_index = surface_index;
   planned.width = size.width, planned.height = size.height;
   planned.interpolation = surface.interpolation;
@@ -85,21 +54,39 @@ PlannedEvaluator plan_evaluator(const Job& job, int surface_index, const Materia
   return planned;
 }
 
+/// What the evaluator takes on the device, and its kernel.
+void plan_structure(const Job& job, PlannedEvaluator* planned) {
+  const bool brdf = planned->patch_brdf || planned->gathers;
+  const StructureSize size =
+      method_of(job, *planned)
+          .structure({planned->width, planned->height, planned->interpolation, planned->asks_densities, brdf},
+                     settings_of(job, *planned));
+  planned->device_bytes = size.device_bytes;
+  planned->host_bytes += size.host_bytes;
+  planned->kernel = size.kernel;
+}
+
 /// Index of the evaluator that a material needs, planned now if it is the first to need it.
-int evaluator_for(const Job& job, const MaterialDescription& material, Plan* plan) {
+int evaluator_for(const Job& job, int material_index, Plan* plan) {
+  const MaterialDescription& material = job.scene.materials[static_cast<std::size_t>(material_index)];
+  const Method& method = job.methods.get(material.ndf);
+  if (plan->gathers_light) check_gathering(material, method);
+  int surface_index = -1;
+  if (method.traits().map) {
+    const auto surface =
+        std::find_if(job.surfaces.begin(), job.surfaces.end(),
+                     [&](const SurfaceDescription& s) { return s.name == material.surface; });
+    surface_index = static_cast<int>(surface - job.surfaces.begin());
+  }
   std::vector<PlannedEvaluator>* planned = &plan->evaluators;
-  if (material.glints) return plan_glints(job.scene.materials, material, plan);
-  const auto surface = std::find_if(job.surfaces.begin(), job.surfaces.end(),
-                                    [&](const SurfaceDescription& s) { return s.name == material.surface; });
-  const int surface_index = static_cast<int>(surface - job.surfaces.begin());
   const auto found = std::find_if(planned->begin(), planned->end(), [&](const PlannedEvaluator& p) {
     return p.surface_index == surface_index && p.evaluator == material.ndf &&
-           p.elements == material.elements && p.masking == material.masking &&
-           p.compensation == material.compensation && p.energy == material.energy;
+           method.share(settings_of(job, p), *material.settings, plan->gathers_light);
   });
   const int index = static_cast<int>(found - planned->begin());
-  if (found == planned->end()) planned->push_back(plan_evaluator(job, surface_index, material));
-  PlannedEvaluator& used = (*planned)[index];
+  if (found == planned->end())
+    planned->push_back(plan_evaluator(job, surface_index, material_index, plan->gathers_light));
+  PlannedEvaluator& used = (*planned)[static_cast<std::size_t>(index)];
   used.materials.push_back(material.name);
   used.asks_densities |= !used.patch_brdf || material.coat.has_value();
   return index;
@@ -120,14 +107,16 @@ std::vector<std::string> channels_for(const std::vector<std::string>& aovs) {
   return channels;
 }
 
-/// `error` is asked only of evaluators that say something of their error.
-void check_estimates(const Plan& plan) {
+/// `error` is asked only of methods that say something of their error.
+void check_estimates(const Job& job, const Plan& plan) {
   if (std::count(plan.channels.begin(), plan.channels.end(), "error.Y") == 0) return;
+  const std::vector<std::string> able =
+      job.methods.names([](const MethodTraits& traits) { return traits.estimates_errors && traits.jobs; });
   for (const PlannedEvaluator& planned : plan.evaluators)
-    if (planned.evaluator != "auto" && planned.evaluator != "triangles")
-      throw UsageError(fmt::format(
-          "image.aovs: \"error\" wants materials with ndf \"auto\" or \"triangles\"; material {} has \"{}\"",
-          planned.materials.front(), planned.evaluator));
+    if (!method_of(job, planned).traits().estimates_errors)
+      throw UsageError(
+          fmt::format("image.aovs: \"error\" wants materials with ndf \"{}\"; material {} has \"{}\"",
+                      fmt::join(able, "\" or \""), planned.materials.front(), planned.evaluator));
 }
 
 double mebibytes(std::size_t bytes) {
@@ -153,6 +142,14 @@ std::vector<std::string> missing_densities(const Job& job, const Plan& plan) {
 
 }  // namespace
 
+const Method& method_of(const Job& job, const PlannedEvaluator& planned) {
+  return job.methods.get(planned.evaluator);
+}
+
+const MethodSettings& settings_of(const Job& job, const PlannedEvaluator& planned) {
+  return *job.scene.materials[static_cast<std::size_t>(planned.first_material)].settings;
+}
+
 Plan make_plan(const Job& job) {
   Plan plan;
   plan.gathers_light = !job.scene.environments.empty() || job.image.max_bounces > 1;
@@ -162,12 +159,12 @@ Plan make_plan(const Job& job) {
     used.insert(shape.material);
     for (const PartMaterial& part : shape.parts) used.insert(part.material);
   }
-  for (const MaterialDescription& material : job.scene.materials)
-    plan.evaluator_of_material.push_back(used.count(material.name) ? evaluator_for(job, material, &plan)
-                                                                   : -1);
+  for (std::size_t n = 0; n < job.scene.materials.size(); ++n)
+    plan.evaluator_of_material.push_back(
+        used.count(job.scene.materials[n].name) ? evaluator_for(job, static_cast<int>(n), &plan) : -1);
 
   plan.channels = channels_for(job.image.aovs);
-  check_estimates(plan);
+  check_estimates(job, plan);
   plan.warnings = missing_densities(job, plan);
   plan.queries_a_batch = kQueriesABatch;
   const std::size_t queries_a_row = static_cast<std::size_t>(job.image.width) * job.image.subpixels *
@@ -178,7 +175,7 @@ Plan make_plan(const Job& job) {
 
   const std::size_t block = plan.rows_a_block * queries_a_row;
   for (PlannedEvaluator& evaluator : plan.evaluators) {
-    if (evaluator.glints_material < 0) plan_structure(&evaluator);  // glints have nothing but their kernel
+    plan_structure(job, &evaluator);
     plan.host_bytes += evaluator.host_bytes;
     plan.device_bytes += evaluator.device_bytes;
   }
@@ -193,7 +190,7 @@ Plan make_plan(const Job& job) {
 std::string describe(const Plan& plan) {
   std::string text;
   for (const PlannedEvaluator& e : plan.evaluators) {
-    if (e.glints_material >= 0) {
+    if (e.surface_index < 0) {
       text += fmt::format("{} for {}: no map, nothing built, kernel {}\n", e.evaluator,
                           fmt::join(e.materials, ", "), e.kernel);
       continue;

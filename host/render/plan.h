@@ -12,15 +12,12 @@ constexpr std::size_t kQueriesABatch = std::size_t{1} << 17;  ///< of one kernel
 
 /// One evaluator on one surface: what is built, uploaded and compiled for it.
 struct PlannedEvaluator {
-  std::string surface;       ///< name in the job; empty for "grid", which needs none
-  std::string evaluator;     ///< e.g. "triangles"
-  int surface_index = 0;     ///< into Job::surfaces; -1: none
-  int glints_material = -1;  ///< into SceneDescription::materials: whose glints these are
-  int elements = 1;          ///< of a mixture, a texel and axis
-  Masking masking = Masking::exact;
-  Compensation compensation = Compensation::diffuse;
-  LostEnergy energy = LostEnergy::exact;
-  bool patch_brdf = false;      ///< it is one of patch_brdf_names(), and lights are multiplied with its BRDF
+  std::string surface;          ///< name in the job; empty for a method that has no map
+  std::string evaluator;        ///< name of the method: "triangles"
+  int surface_index = -1;       ///< into Job::surfaces; -1: none
+  int first_material = 0;       ///< into SceneDescription::materials: whose settings these are
+  bool patch_brdf = false;      ///< lights are multiplied with its BRDF
+  bool gathers = false;         ///< light from all around, by its BRDF
   bool asks_densities = false;  ///< a material multiplies lights with its density
   int width = 0, height = 0;
   Interpolation interpolation = Interpolation::bilinear;
@@ -52,5 +49,9 @@ Plan make_plan(const Job& job);
 
 /// The plan in words, a line an item.
 std::string describe(const Plan& plan);
+
+/// The method of a planned evaluator, and its settings.
+const Method& method_of(const Job& job, const PlannedEvaluator& planned);
+const MethodSettings& settings_of(const Job& job, const PlannedEvaluator& planned);
 
 }  // namespace mica::host

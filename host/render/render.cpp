@@ -1,13 +1,13 @@
 #include "host/render/render.h"
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <optional>
 
 #include "host/base/stopwatch.h"
 #include "host/render/built_job.h"
-#include "host/render/error_estimates.h"
 #include "host/render/film.h"
 #include "host/render/gather_light.h"
 #include "mica/version.h"
@@ -26,6 +26,17 @@ void offer(const TracedRows& rows, const std::vector<float>& densities, const Pl
     sampler->offer(pixel, ordinal, glint.query, densities[n], plan.evaluator_of_material[glint.material],
                    glint.glints);
   }
+}
+
+std::vector<float> estimate_errors(const BuiltJob& built, const TracedRows& rows,
+                                   const std::vector<float>& densities) {
+  std::vector<float> errors(densities.size());
+  tbb::parallel_for(std::size_t{0}, errors.size(), [&](std::size_t n) {
+    const GlintQuery& glint = rows.queries[n];
+    const auto evaluator = static_cast<std::size_t>(built.plan().evaluator_of_material[glint.material]);
+    errors[n] = static_cast<float>(built.evaluator(evaluator).error_estimate(glint.query, densities[n]));
+  });
+  return errors;
 }
 
 /// Traces and evaluates all rows; the device evaluates one block while the host traces the next.

@@ -1,16 +1,17 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
-#include "host/base/cavities.h"
-#include "host/base/masking.h"
-#include "host/scene/glints_description.h"
+#include "host/base/glints_description.h"
 
 namespace mica::host {
+
+class MethodSettings;
 
 /// Linear RGB, or any per-channel triple.
 using Color = Eigen::Vector3d;
@@ -44,18 +45,15 @@ struct CoatDescription {
 /// `[material.NAME]`
 struct MaterialDescription {
   std::string name;
-  std::string surface;               ///< name of a surface
-  Eigen::Vector2d repeat{1, 1};      ///< map periods over the shape's uv
-  std::string ndf = "triangles";     ///< evaluator
-  Masking masking = Masking::exact;  ///< of an evaluator with a BRDF of its own
-  int elements = 1;                  ///< of a mixture, or seeds of cavities, a texel and axis
-  Compensation compensation = Compensation::diffuse;  ///< of cavities
-  LostEnergy energy = LostEnergy::exact;              ///< of cavities
-  double roughness = 0.01;                            ///< sigma_r on the disk
+  std::string surface;                                       ///< name of a surface
+  Eigen::Vector2d repeat{1, 1};                              ///< map periods over the shape's uv
+  std::string ndf = "triangles";                             ///< name of the method
+  std::shared_ptr<const MethodSettings> settings = nullptr;  ///< the method's own
+  double roughness = 0.01;                                   ///< sigma_r on the disk
   Fresnel specular = ColorFresnel{};
   Color diffuse{0, 0, 0};  ///< Lambertian albedo
   std::optional<CoatDescription> coat = {};
-  std::optional<GlintsDescription> glints = {};  ///< of the evaluator "grid", which needs no surface
+  std::optional<GlintsDescription> glints = {};  ///< of a method that has no map
 };
 
 struct PlaneShape {  ///< square of the plane z = height, uv over its sides

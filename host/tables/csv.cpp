@@ -9,7 +9,7 @@
 #include "host/tables/table.h"
 #include "mica/error.h"
 
-namespace mica::host::app {
+namespace mica::host {
 namespace {
 
 std::string_view trim(std::string_view text) {
@@ -122,4 +122,4 @@ Table read_csv(const std::string& path, const std::vector<std::string>& names, s
   return CsvReader(path, names, required).read();
 }
 
-}  // namespace mica::host::app
+}  // namespace mica::host

@@ -13,7 +13,7 @@
 
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__);
 
-namespace mica::host::app {
+namespace mica::host {
 namespace {
 
 constexpr char kMagic[] = "\x93NUMPY";
@@ -220,4 +220,4 @@ std::string to_npy(const std::vector<float>& values, std::size_t columns) {
   return bytes;
 }
 
-}  // namespace mica::host::app
+}  // namespace mica::host

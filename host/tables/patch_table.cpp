@@ -6,7 +6,7 @@
 #include "host/tables/query_table.h"
 #include "mica/error.h"
 
-namespace mica::host::app {
+namespace mica::host {
 namespace {
 
 constexpr std::size_t kView = 5, kLight = 8;  // columns
@@ -68,4 +68,4 @@ void PatchTable::check(const std::function<std::string(const ViewQuery&)>& view_
   });
 }
 
-}  // namespace mica::host::app
+}  // namespace mica::host

@@ -8,7 +8,7 @@
 #include "host/base/query.h"
 #include "host/tables/table.h"
 
-namespace mica::host::app {
+namespace mica::host {
 
 /// What a row of a patch's table asks for.
 enum class PatchQuantity {
@@ -45,4 +45,4 @@ class PatchTable {
   double roughness_ = 0;  // where the table has no such column
 };
 
-}  // namespace mica::host::app
+}  // namespace mica::host

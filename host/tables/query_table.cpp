@@ -7,7 +7,7 @@
 
 #include "mica/error.h"
 
-namespace mica::host::app {
+namespace mica::host {
 namespace {
 
 const std::vector<std::string> kColumns = {"u", "v", "cuu", "cuv", "cvv", "s", "t", "roughness"};
@@ -63,4 +63,4 @@ void QueryTable::check(const std::function<std::string(const Query&)>& problem_o
   check_rows(path_, size(), [&](std::size_t row) { return problem_of(query(row)); });
 }
 
-}  // namespace mica::host::app
+}  // namespace mica::host

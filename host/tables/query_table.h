@@ -8,7 +8,7 @@
 #include "host/base/query.h"
 #include "host/tables/table.h"
 
-namespace mica::host::app {
+namespace mica::host {
 
 /// Reads a .npy or .csv file of queries.
 /// @param columns the names of its columns; the last one may be missing.
@@ -42,4 +42,4 @@ class QueryTable {
   double roughness_ = 0;  // where the table has no such column
 };
 
-}  // namespace mica::host::app
+}  // namespace mica::host

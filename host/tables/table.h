@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace mica::host::app {
+namespace mica::host {
 
 /// Rows of numbers.
 struct Table {
@@ -30,4 +30,4 @@ std::string to_npy(const std::vector<float>& values, std::size_t columns = 0);
 /// Throws FileError when the file cannot be read, UsageError naming the line for everything else.
 Table read_csv(const std::string& path, const std::vector<std::string>& names, std::size_t required);
 
-}  // namespace mica::host::app
+}  // namespace mica::host

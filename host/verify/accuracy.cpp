@@ -69,10 +69,6 @@ void add_brightest(Evaluator* evaluator, const Surface& surface, std::vector<std
 
 }  // namespace
 
-double relative_bound(double roughness) {
-  return roughness < 1e-3 ? 1e-3 : 1e-4;
-}
-
 Footprint make_footprint(const Surface& surface, const Eigen::Vector2d& mean_uv, double sigma_major_texels,
                          double sigma_minor_texels, double angle) {
   const Eigen::Array2d texels(surface.width(), surface.height());
@@ -116,31 +112,55 @@ Accuracy compare(Evaluator* evaluator, const reference::Oracle& oracle, const Su
   return compare(evaluator, densities, promise, surface, std::move(probes));
 }
 
+namespace {
+
+/// @param error_of of a query, its density, its reference and the largest one of its footprint.
+Accuracy worst_of(const std::vector<std::vector<Query>>& probes, const std::vector<float>& densities,
+                  const std::vector<double>& expected,
+                  const std::function<double(const Query&, double, double, double)>& error_of) {
+  Accuracy accuracy;
+  accuracy.queries = densities.size();
+  std::size_t n = 0;
+  for (const std::vector<Query>& probe : probes) {
+    const auto first = expected.begin() + static_cast<long>(n);
+    const double peak = *std::max_element(first, first + static_cast<long>(probe.size()));
+    for (const Query& query : probe) {
+      const double error = error_of(query, densities[n], expected[n], peak);
+      if (error > accuracy.worst) accuracy = {densities.size(), error, query, densities[n], expected[n]};
+      ++n;
+    }
+  }
+  return accuracy;
+}
+
+}  // namespace
+
 Accuracy compare(Evaluator* evaluator, const References& references,
                  const std::function<Promise(double roughness)>& promise, const Surface& surface,
                  std::vector<std::vector<Query>> probes) {
   add_brightest(evaluator, surface, &probes);
   const std::vector<Query> queries = joined(probes);
-  const std::vector<float> densities = evaluator->evaluate(queries);
-  const std::vector<double> expected = references(queries);
+  const auto error_of = [&](const Query& query, double density, double reference, double peak) {
+    const Promise promised = promise(query.roughness);
+    const double difference = std::abs(density - reference);
+    return difference == 0 ? 0 : difference / (promised.relative * reference + promised.of_peak * peak);
+  };
+  return worst_of(probes, evaluator->evaluate(queries), references(queries), error_of);
+}
 
-  Accuracy accuracy;
-  accuracy.queries = queries.size();
-  std::size_t first = 0;
-  for (const std::vector<Query>& probe : probes) {
-    const std::size_t end = first + probe.size();
-    const double peak = *std::max_element(expected.begin() + static_cast<long>(first),
-                                          expected.begin() + static_cast<long>(end));
-    for (std::size_t n = first; n < end; ++n) {
-      const Promise promised = promise(queries[n].roughness);
-      const double difference = std::abs(densities[n] - expected[n]);
-      const double allowed = promised.relative * expected[n] + promised.of_peak * peak;
-      const double error = difference == 0 ? 0 : difference / allowed;
-      if (error > accuracy.worst) accuracy = {queries.size(), error, queries[n], densities[n], expected[n]};
-    }
-    first = end;
-  }
-  return accuracy;
+Accuracy compare(Evaluator* evaluator, const Standard& standard, const Surface& surface,
+                 std::vector<std::vector<Query>> probes) {
+  add_brightest(evaluator, surface, &probes);
+  return compare_probes(evaluator, standard, probes);
+}
+
+Accuracy compare_probes(Evaluator* evaluator, const Standard& standard,
+                        const std::vector<std::vector<Query>>& probes) {
+  const std::vector<Query> queries = joined(probes);
+  const auto error_of = [&](const Query& query, double density, double reference, double peak) {
+    return standard.error(query, density, reference, peak);
+  };
+  return worst_of(probes, evaluator->evaluate(queries), standard.references(queries), error_of);
 }
 
 }  // namespace mica::host

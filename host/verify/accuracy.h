@@ -7,15 +7,11 @@
 
 #include "host/base/query.h"
 #include "host/methods/evaluator.h"
+#include "host/methods/standard.h"
 #include "host/reference/oracle.h"
 #include "host/surface/surface.h"
 
 namespace mica::host {
-
-/// What evaluators promise: |D - ref| <= relative_bound * ref + kPeakBound * peak, where peak is the largest
-/// reference of the footprint over its half vectors.
-double relative_bound(double roughness);
-constexpr double kPeakBound = 1e-6;
 
 /// A footprint by its axes.
 /// @param angle radians from +u to the major axis, in texel space.
@@ -26,11 +22,6 @@ Footprint make_footprint(const Surface& surface, const Eigen::Vector2d& mean_uv,
 /// densities fall off (4 to 6), and anywhere on the disk. The first one is on the normal at the mean.
 std::vector<Query> probe(const Surface& surface, const Footprint& footprint, double roughness,
                          int half_vectors, std::uint64_t seed);
-
-/// A promise of another form: |D - ref| <= relative * ref + of_peak * peak.
-struct Promise {
-  double relative = 1e-4, of_peak = kPeakBound;
-};
 
 /// How far an evaluator lies from its reference, in units of what it promises.
 struct Accuracy {
@@ -48,6 +39,13 @@ struct Accuracy {
 /// @param probes each of one footprint. Throws what the two throw.
 Accuracy compare(Evaluator* evaluator, const reference::Oracle& oracle, const Surface& surface,
                  std::vector<std::vector<Query>> probes);
+
+/// The same against a method's own definition, and what it promises to that.
+Accuracy compare(Evaluator* evaluator, const Standard& standard, const Surface& surface,
+                 std::vector<std::vector<Query>> probes);
+/// The same without a brightest query, which needs a map.
+Accuracy compare_probes(Evaluator* evaluator, const Standard& standard,
+                        const std::vector<std::vector<Query>>& probes);
 
 /// The same with another reference and what is promised against it at a roughness.
 using References = std::function<std::vector<double>(const std::vector<Query>&)>;

@@ -6,7 +6,7 @@
 
 #include "host/base/constants.h"
 
-namespace mica::host::app {
+namespace mica::host {
 namespace {
 
 constexpr std::size_t kPoints = 1 << 20;
@@ -171,4 +171,4 @@ std::vector<Check> arithmetic_checks(const std::vector<FunctionError>& errors) {
   return checks;
 }
 
-}  // namespace mica::host::app
+}  // namespace mica::host

@@ -6,7 +6,7 @@
 #include "host/device/device.h"
 #include "host/verify/device_checks.h"
 
-namespace mica::host::app {
+namespace mica::host {
 
 /// The largest error of one function on a device, in units of the last place (ULP) of the exact value.
 struct FunctionError {
@@ -24,4 +24,4 @@ std::vector<FunctionError> measure_arithmetic(Device* device);
 /// "good enough" when each function that kernels use has the digits that they need.
 std::vector<Check> arithmetic_checks(const std::vector<FunctionError>& errors);
 
-}  // namespace mica::host::app
+}  // namespace mica::host

@@ -8,7 +8,7 @@
 #include "kernels/struct_layout.h"
 #include "kernels/types.h"
 
-namespace mica::host::app {
+namespace mica::host {
 namespace {
 
 constexpr std::size_t kLanes = 16;
@@ -110,4 +110,4 @@ std::vector<Check> check_special_functions(Device* device) {
   return checks;
 }
 
-}  // namespace mica::host::app
+}  // namespace mica::host

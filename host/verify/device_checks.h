@@ -6,7 +6,7 @@
 
 #include "host/device/device.h"
 
-namespace mica::host::app {
+namespace mica::host {
 
 /// One line of the selftest.
 struct Check {
@@ -26,4 +26,4 @@ Check check_struct_layout(Device* device);
 /// The special functions of kernels/wave/gaussian.h against double precision, as vectors and as work-items.
 std::vector<Check> check_special_functions(Device* device);
 
-}  // namespace mica::host::app
+}  // namespace mica::host

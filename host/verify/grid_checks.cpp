@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "host/app/interrupt.h"
+#include "host/base/interrupt.h"
 #include "host/methods/grid/grid_brdf.h"
 #include "host/reference/glint_draws.h"
 #include "host/surface/random.h"
 
-namespace mica::host::app {
+namespace mica::host {
 namespace {
 
 constexpr double kRelativeBound = 1e-4, kSmoothBound = 1e-6;
@@ -97,4 +97,4 @@ std::vector<Check> check_grid(Device* device) {
   return checks;
 }
 
-}  // namespace mica::host::app
+}  // namespace mica::host

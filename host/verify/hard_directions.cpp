@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "host/base/constants.h"
-#include "host/methods/make_patch_brdf.h"
+#include "host/methods/patch_brdf.h"
 #include "host/surface/random.h"
 #include "host/verify/accuracy.h"
 #include "mica/error.h"
@@ -73,19 +73,17 @@ std::string fault_of(const BrdfValue& value, const Albedo& albedo, const BrdfSam
   return "";
 }
 
-/// Geometric masking knows one roughness for the whole map, filtered masking one lobe for a patch: only exact
-/// masking is normalised.
-void judge_energy(double most, Masking masking, HardResult* result) {
+/// @param conserves it promises that no patch scatters more than it receives.
+void judge_energy(double most, bool conserves, HardResult* result) {
   constexpr double rounding = 0.02;
   if (most <= 1 + rounding || result->outcome == Outcome::broken) return;
-  const bool known = masking != Masking::exact;
-  result->outcome = known ? Outcome::limitation : Outcome::broken;
+  result->outcome = conserves ? Outcome::broken : Outcome::limitation;
   result->worst = std::max(result->worst, most);
   result->reason = fmt::format("scatters up to {:.2f} times what it receives", result->worst);
 }
 
-void ask(const HardDirections& directions, const Surface& surface, Masking masking, PatchBrdf* brdf,
-         int count, HardResult* result) {
+void ask(const HardDirections& directions, const Surface& surface, bool conserves, PatchBrdf* brdf, int count,
+         HardResult* result) {
   std::vector<BrdfQuery> queries;
   std::vector<ViewQuery> views;
   std::vector<SampleQuery> draws;
@@ -110,7 +108,7 @@ void ask(const HardDirections& directions, const Surface& surface, Masking maski
                     queries[n].view.y(), queries[n].view.z(), queries[n].light.x(), queries[n].light.y(),
                     queries[n].light.z(), queries[n].roughness);
   }
-  judge_energy(most_energy, masking, result);
+  judge_energy(most_energy, conserves, result);
 }
 
 }  // namespace
@@ -136,20 +134,36 @@ const std::vector<HardDirections>& hard_directions() {
   return all;
 }
 
-std::vector<HardResult> run_hard_directions(const HardDirections& directions, Device& device, int queries) {
+namespace {
+
+/// The method's settings, once for every masking that it knows; each with its name.
+std::vector<std::pair<std::string, SettingTexts>> maskings_of(const Method& method) {
+  for (const SettingEntry& entry : list_settings(*method.settings())) {
+    if (entry.key != "masking") continue;
+    std::vector<std::pair<std::string, SettingTexts>> all;
+    for (const std::string& word : entry.words)
+      all.push_back({fmt::format("{}, {}", method.name(), word), {{"masking", word}}});
+    return all;
+  }
+  return {{method.name(), {}}};
+}
+
+}  // namespace
+
+std::vector<HardResult> run_hard_directions(const HardDirections& directions, Device& device, int queries,
+                                            const MethodRegistry& methods) {
   std::vector<HardResult> results;
-  for (const std::string& name : patch_brdf_names()) {
-    const std::size_t maskings = name == "beckmanns" ? masking_names().size() : 1;  // others have but one
-    for (std::size_t masking = 0; masking < maskings; ++masking) {
-      PatchBrdfSettings settings;
-      settings.masking = static_cast<Masking>(masking);
+  for (const auto& method : methods.all()) {
+    if (!method->traits().lit_by_brdf) continue;
+    for (const auto& [label, texts] : maskings_of(*method)) {
+      const std::unique_ptr<MethodSettings> settings = method->settings();
+      read_settings(texts, settings.get());
       HardResult result;
-      result.hard_case = directions.name;
-      result.evaluator = maskings == 1 ? name : fmt::format("{}, {}", name, masking_names()[masking]);
+      result.hard_case = directions.name, result.evaluator = label;
       for (const Surface& surface : surfaces()) {
         try {
-          ask(directions, surface, settings.masking, make_patch_brdf(name, device, surface, settings).get(),
-              queries, &result);
+          ask(directions, surface, method->conserves_energy(*settings),
+              method->make_brdf(&device, &surface, *settings).get(), queries, &result);
         } catch (const UsageError& error) {
           result.outcome = Outcome::refused, result.reason = error.what();
         } catch (const DeviceError& error) {

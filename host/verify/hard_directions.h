@@ -21,6 +21,7 @@ const std::vector<HardDirections>& hard_directions();
 /// not negative, a patch may not scatter more than it receives, a draw's direction has to be unit and its
 /// weight no larger than a hundred, and where nothing is seen there has to be nothing.
 /// @param queries of each kind, surface and BRDF.
-std::vector<HardResult> run_hard_directions(const HardDirections& directions, Device& device, int queries);
+std::vector<HardResult> run_hard_directions(const HardDirections& directions, Device& device, int queries,
+                                            const MethodRegistry& methods = MethodRegistry::builtin());
 
 }  // namespace mica::host

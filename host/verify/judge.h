@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "host/methods/evaluator.h"
-#include "host/methods/grid/grid_query.h"
+#include "host/methods/method.h"
+#include "host/methods/standard.h"
 #include "host/reference/oracle.h"
 #include "host/surface/surface.h"
 
@@ -31,10 +32,8 @@ class Judge {
                         std::vector<std::vector<Query>> probes) const = 0;
 };
 
-/// Of an evaluator on a map. The surface and the oracle have to outlive it.
-std::unique_ptr<Judge> make_judge(const std::string& evaluator, const Surface& surface,
-                                  const reference::Oracle& oracle);
-
-std::unique_ptr<Judge> make_grid_judge(const GlintGrid& grid);
+/// For a method with these settings. The surface and the oracle have to outlive it.
+std::unique_ptr<Judge> make_judge(const Method& method, const MethodSettings& settings,
+                                  const Surface& surface, const reference::Oracle& oracle);
 
 }  // namespace mica::host

@@ -4,12 +4,12 @@
 
 #include <cmath>
 
-#include "host/app/interrupt.h"
+#include "host/base/interrupt.h"
 #include "host/methods/pyramid/pyramid_painter.h"
 #include "host/reference/oracle.h"
 #include "host/verify/accuracy.h"
 
-namespace mica::host::app {
+namespace mica::host {
 namespace {
 
 constexpr double kAllowed = 0.01;  // relative L2
@@ -72,4 +72,4 @@ std::vector<Check> check_pyramid(Device* device) {
           check_image(&pyramid, device, surface, 8, 0.005)};
 }
 
-}  // namespace mica::host::app
+}  // namespace mica::host

@@ -9,8 +9,6 @@
 #include <limits>
 #include <optional>
 
-#include "host/methods/grid/grid_evaluator.h"
-#include "host/methods/make_evaluator.h"
 #include "host/methods/map/map_query.h"
 #include "host/verify/accuracy.h"
 #include "host/verify/judge.h"
@@ -145,23 +143,19 @@ HardResult refused(const HardCase& hard_case, const std::string& evaluator, cons
   return result;
 }
 
-HardResult run_on_map(const HardCase& hard_case, const std::string& name, const Surface& surface,
+HardResult run_method(const HardCase& hard_case, const Method& method, const Surface& surface,
                       const reference::Oracle& oracle, Device& device, const HardEffort& effort) {
   try {
-    const std::unique_ptr<Evaluator> evaluator = make_evaluator(name, device, surface);
-    return run_trial(hard_case, surface, evaluator.get(), *make_judge(name, surface, oracle), effort);
+    const bool has_map = method.traits().map;
+    const std::unique_ptr<MethodSettings> settings =
+        has_map ? method.settings() : method.settings_beside(surface.width(), surface.height());
+    const std::unique_ptr<Evaluator> evaluator = method.make(&device, &surface, *settings);
+    const Problem problem = [&](const Query& q) { return method.query_problem(q, &surface); };
+    return Trial(hard_case, surface, effort, problem)
+        .run(evaluator.get(), *make_judge(method, *settings, surface, oracle));
   } catch (const UsageError& error) {
-    return refused(hard_case, name, error.what());
+    return refused(hard_case, method.name(), error.what());
   }
-}
-
-HardResult run_on_grid(const HardCase& hard_case, const Surface& surface, Device& device,
-                       const HardEffort& effort) {
-  GlintGrid grid;
-  // As many cells as the map has texels, so that the footprints are as hard.
-  grid.density = 1.0 * surface.width() * surface.height();
-  GridEvaluator evaluator(device, grid);
-  return Trial(hard_case, surface, effort, grid_query_problem).run(&evaluator, *make_grid_judge(grid));
 }
 
 }  // namespace
@@ -180,21 +174,25 @@ const char* name_of(Outcome outcome) {
   return "";
 }
 
-std::vector<HardResult> run_hard_case(const HardCase& hard_case, Device& device, const HardEffort& effort) {
+std::vector<HardResult> run_hard_case(const HardCase& hard_case, Device& device, const HardEffort& effort,
+                                      const MethodRegistry& methods) {
   std::vector<HardResult> results;
   std::optional<Surface> surface;
+  std::string problem;
   try {
     surface = hard_case.surface();
   } catch (const UsageError& error) {
-    for (const std::string& name : evaluator_names())
-      results.push_back(refused(hard_case, name, error.what()));
-    return results;
+    problem = error.what();
   }
   constexpr double oracle_tolerance = 1e-7;
-  const reference::Oracle oracle(*surface, oracle_tolerance);
-  for (const std::string& name : evaluator_names())
-    if (name != "grid") results.push_back(run_on_map(hard_case, name, *surface, oracle, device, effort));
-  if (!hard_case.of_the_map) results.push_back(run_on_grid(hard_case, *surface, device, effort));
+  std::optional<reference::Oracle> oracle;
+  if (surface) oracle.emplace(*surface, oracle_tolerance);
+  for (const auto& method : methods.all()) {
+    const MethodTraits traits = method->traits();
+    if (!traits.compared || (!traits.map && (hard_case.of_the_map || !surface))) continue;
+    results.push_back(surface ? run_method(hard_case, *method, *surface, *oracle, device, effort)
+                              : refused(hard_case, method->name(), problem));
+  }
   return results;
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "host/methods/registry.h"
 #include "host/verify/hard_cases.h"
 #include "host/verify/judge.h"
 
@@ -34,13 +35,14 @@ struct HardEffort {
   std::uint64_t first = 0;        ///< number of the first question
 };
 
-/// Asks every evaluator of the registry, mixtures at `elements` = 1, and `grid`.
+/// Asks every method of the registry that is compared, with its default settings.
 ///
-/// `triangles` is set against the oracle, `grid` against [Kem25] Algorithm 1. Others approximate the map:
-/// further from the oracle than a relative L2 of one percent is their documented limitation; mixtures also
-/// have to be their own sum in double precision. All answers have to be finite, not negative, and not above
-/// what can be.
-std::vector<HardResult> run_hard_case(const HardCase& hard_case, Device& device, const HardEffort& effort);
+/// A method is set against its Standard: `triangles` against the oracle, `grid` against [Kem25] Algorithm 1.
+/// Others approximate the map: further from the oracle than a relative L2 of one percent is their documented
+/// limitation; mixtures also have to be their own sum in double precision. All answers have to be finite, not
+/// negative, and not above what can be.
+std::vector<HardResult> run_hard_case(const HardCase& hard_case, Device& device, const HardEffort& effort,
+                                      const MethodRegistry& methods = MethodRegistry::builtin());
 
 /// The same for one evaluator on the case's surface.
 HardResult run_trial(const HardCase& hard_case, const Surface& surface, Evaluator* evaluator,

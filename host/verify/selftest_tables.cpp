@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
-#include "host/app/interrupt.h"
+#include "host/base/interrupt.h"
 #include "host/verify/hard_directions.h"
 
-namespace mica::host::app {
+namespace mica::host {
 namespace {
 
 std::string ulp_text(double ulp) {
@@ -36,7 +36,8 @@ std::uint64_t evaluated(const std::vector<HardResult>& results) {
 }
 
 /// Rounds of further questions to every case and evaluator.
-void ask_more(Device* device, std::uint64_t evaluations, std::vector<HardResult>* results) {
+void ask_more(Device* device, std::uint64_t evaluations, const MethodRegistry& methods,
+              std::vector<HardResult>* results) {
   HardEffort effort;
   effort.footprints = 1;
   effort.evaluations = std::clamp<std::uint64_t>(evaluations / 400, 1000, 250'000);
@@ -44,7 +45,7 @@ void ask_more(Device* device, std::uint64_t evaluations, std::vector<HardResult>
     effort.first = round * 1'000'000;
     for (const HardCase& hard_case : hard_cases()) {
       check_interrupt();
-      for (const HardResult& more : run_hard_case(hard_case, *device, effort)) {
+      for (const HardResult& more : run_hard_case(hard_case, *device, effort, methods)) {
         const auto same = std::find_if(results->begin(), results->end(), [&](const HardResult& r) {
           return r.hard_case == more.hard_case && r.evaluator == more.evaluator;
         });
@@ -85,16 +86,17 @@ nlohmann::json arithmetic_json(const std::vector<FunctionError>& errors) {
   return list;
 }
 
-std::vector<HardResult> print_hard_cases(Device* device, std::uint64_t evaluations) {
+std::vector<HardResult> print_hard_cases(Device* device, std::uint64_t evaluations,
+                                         const MethodRegistry& methods) {
   std::vector<HardResult> results;
   for (const HardCase& hard_case : hard_cases()) {
     check_interrupt();
-    for (const HardResult& result : run_hard_case(hard_case, *device, {})) results.push_back(result);
+    for (const HardResult& result : run_hard_case(hard_case, *device, {}, methods)) results.push_back(result);
   }
-  if (evaluations > 0) ask_more(device, evaluations, &results);
+  if (evaluations > 0) ask_more(device, evaluations, methods, &results);
   constexpr int queries = 100;
   for (const HardDirections& directions : hard_directions())
-    for (const HardResult& result : run_hard_directions(directions, *device, queries))
+    for (const HardResult& result : run_hard_directions(directions, *device, queries, methods))
       results.push_back(result);
   fmt::print("\n{:<36} {:<20} {:<13} {:>9} {:>8} {:>8}\n", "hard case", "evaluator", "outcome", "answers",
              "compared", "error");
@@ -117,4 +119,4 @@ nlohmann::json hard_cases_json(const std::vector<HardResult>& results) {
   return list;
 }
 
-}  // namespace mica::host::app
+}  // namespace mica::host

@@ -8,14 +8,15 @@
 #include "host/verify/arithmetic.h"
 #include "host/verify/run_hard_case.h"
 
-namespace mica::host::app {
+namespace mica::host {
 
 void print_arithmetic(const std::vector<FunctionError>& errors);
 nlohmann::json arithmetic_json(const std::vector<FunctionError>& errors);
 
 /// Runs and prints every hard case on every evaluator; then more questions to each, until at least
 /// `evaluations` answers were looked at. Between cases it checks for interrupts.
-std::vector<HardResult> print_hard_cases(Device* device, std::uint64_t evaluations);
+std::vector<HardResult> print_hard_cases(Device* device, std::uint64_t evaluations,
+                                         const MethodRegistry& methods);
 nlohmann::json hard_cases_json(const std::vector<HardResult>& results);
 
-}  // namespace mica::host::app
+}  // namespace mica::host

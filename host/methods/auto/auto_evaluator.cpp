@@ -26,7 +26,7 @@ namespace {
 constexpr double kFirstRoughness = 0.02;
 constexpr double kTrianglesError = 1e-4;  // what `triangles` are off by, at most
 
-enum class Method { pyramid, gaussians, triangles };
+enum class CandidateKind { pyramid, gaussians, triangles };
 
 /// Pyramids from the cheapest to the most precise, and the least relative L2 that was seen of each on maps
 /// like those of bench/pyramid_bench.cpp: for a tolerance below it, building its levels is not worth a try.
@@ -73,7 +73,7 @@ double typical_density(const std::vector<float>& densities) {
 }  // namespace
 
 struct AutoEvaluator::Candidate {
-  Method method;
+  CandidateKind method;
   int elements;
   PyramidPrecision precision;
   std::string label;
@@ -81,8 +81,8 @@ struct AutoEvaluator::Candidate {
 
   std::unique_ptr<Evaluator> make(Device& device, const Surface& surface,
                                   const std::shared_ptr<PyramidStore>& store) const {
-    if (method == Method::triangles) return std::make_unique<TriangleEvaluator>(device, surface);
-    if (method == Method::gaussians) {
+    if (method == CandidateKind::triangles) return std::make_unique<TriangleEvaluator>(device, surface);
+    if (method == CandidateKind::gaussians) {
       MixtureSettings settings;
       settings.elements = elements;
       return std::make_unique<GaussianEvaluator>(device, surface, settings);
@@ -94,8 +94,8 @@ struct AutoEvaluator::Candidate {
   }
 
   CostModel cost_model(const Surface& surface) const {
-    if (method == Method::triangles) return triangles_cost(surface.interpolation());
-    return method == Method::gaussians ? gaussians_cost(elements) : pyramid_cost();
+    if (method == CandidateKind::triangles) return triangles_cost(surface.interpolation());
+    return method == CandidateKind::gaussians ? gaussians_cost(elements) : pyramid_cost();
   }
 };
 
@@ -116,15 +116,15 @@ AutoEvaluator::AutoEvaluator(Device& device, const Surface& surface, double tole
     const auto& [precision, least_error] = kPyramids[n];
     if (n == kPrecisePyramid) precise_pyramid_ = candidates_.size();
     if (tolerance > least_error)
-      candidates_.push_back({Method::pyramid, 0, precision,
+      candidates_.push_back({CandidateKind::pyramid, 0, precision,
                              fmt::format("pyramid, blocks of {:.2g} footprints, cells of {:.2g} roughnesses",
                                          precision.block_ratio, precision.cell_ratio)});
   }
   if (surface.interpolation() != Interpolation::bicubic)
     for (const int elements : {1, 2, 4})
       candidates_.push_back(
-          {Method::gaussians, elements, {}, fmt::format("gaussians, {} a texel and axis", elements)});
-  candidates_.push_back({Method::triangles, 0, {}, "triangles"});
+          {CandidateKind::gaussians, elements, {}, fmt::format("gaussians, {} a texel and axis", elements)});
+  candidates_.push_back({CandidateKind::triangles, 0, {}, "triangles"});
 }
 AutoEvaluator::~AutoEvaluator() = default;
 
@@ -174,9 +174,13 @@ void AutoEvaluator::calibrate(const CalibrationSample& sample) {
     if (!is_chosen(candidate)) candidate.built.reset();
   std::set<double> cell_widths;
   for (const auto& [kind, candidate] : candidate_of_)
-    if (candidates_[candidate].method == Method::pyramid)
+    if (candidates_[candidate].method == CandidateKind::pyramid)
       cell_widths.insert(cell_width(kind.roughness, candidates_[candidate].precision));
   store_->keep(cell_widths);
+}
+
+void AutoEvaluator::calibrate(std::size_t count, const QuerySource& query, double scale) {
+  calibrate(calibration_sample(count, kMostSamples, surface_.width(), surface_.height(), query, scale));
 }
 
 double AutoEvaluator::build_cost(const Candidate& candidate) const {
@@ -205,7 +209,7 @@ AutoChoice AutoEvaluator::choose(const QueryClass& kind, Samples samples) {
       samples.in_job * best.cost > build_cost(candidates_[precise_pyramid_]))
     refer_to_pyramid(&samples);
   candidate_of_[kind] = candidates_.size() - 1;
-  for (const Method method : {Method::pyramid, Method::gaussians}) {
+  for (const CandidateKind method : {CandidateKind::pyramid, CandidateKind::gaussians}) {
     for (std::size_t n = 0; n + 1 < candidates_.size() && samples.most >= kFewestSamples; ++n) {
       if (candidates_[n].method != method) continue;
       AutoChoice choice{kind, candidates_[n].label};
@@ -235,7 +239,7 @@ void AutoEvaluator::refer_to_pyramid(Samples* samples) {
 }
 
 AutoEvaluator::Verdict AutoEvaluator::judge(Candidate* candidate, Samples* samples, AutoChoice* choice) {
-  if (candidate->method == Method::pyramid && !pyramid(candidate)->choose(samples->queries.front()))
+  if (candidate->method == CandidateKind::pyramid && !pyramid(candidate)->choose(samples->queries.front()))
     return Verdict::breaks;  // it would only pass them on to the texels
   const CostModel model = candidate->cost_model(surface_);
   const int width = surface_.width(), height = surface_.height();
@@ -271,9 +275,9 @@ AutoEvaluator::Verdict AutoEvaluator::judge(Candidate* candidate, Samples* sampl
 double AutoEvaluator::cost(Candidate* candidate, const std::vector<Query>& queries, std::size_t count) {
   const std::vector<Query> some(queries.begin(), queries.begin() + static_cast<std::ptrdiff_t>(count));
   std::vector<float> counts;
-  if (candidate->method == Method::pyramid) {
+  if (candidate->method == CandidateKind::pyramid) {
     counts = pyramid(candidate)->count_elements(some);
-  } else if (candidate->method == Method::gaussians) {
+  } else if (candidate->method == CandidateKind::gaussians) {
     if (!elements_counter_) {
       MixtureSettings settings;
       settings.elements = kCountedMixture;

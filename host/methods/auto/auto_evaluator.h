@@ -15,16 +15,6 @@ namespace mica::host {
 class PyramidEvaluator;
 class PyramidStore;
 
-/// Queries that are alike: footprints of one octave, roughnesses of half an octave.
-struct QueryClass {
-  int size = 0;       ///< floor of log2 of sqrt(2) times the smaller standard deviation in texels
-  int roughness = 0;  ///< of 2 log2 (roughness / 0.02)
-
-  friend bool operator<(const QueryClass& a, const QueryClass& b) {
-    return a.size != b.size ? a.size < b.size : a.roughness < b.roughness;
-  }
-};
-
 QueryClass class_of(const Query& query, int map_width, int map_height);
 
 /// Queries of a job that calibration may look at.
@@ -37,17 +27,6 @@ struct CalibrationSample {
 /// @param scale how many queries of the job each of these stands for.
 CalibrationSample calibration_sample(std::size_t count, std::size_t each, int map_width, int map_height,
                                      const std::function<Query(std::size_t)>& query, double scale = 1);
-
-/// What `auto` chose for a class, and why.
-struct AutoChoice {
-  QueryClass kind;
-  std::string evaluator;       ///< in words: "gaussians, 2 a texel and axis"
-  std::size_t samples = 0;     ///< queries that it was judged by
-  double relative_l2 = 0;      ///< of these
-  double upper_bound = 0;      ///< of the relative L2 of all queries of the class, at 95% confidence
-  double typical_density = 0;  ///< sum of squares of the samples' densities over their sum
-  double cost = 0;             ///< ns of one core that a query is estimated to take
-};
 
 /// `auto`: for each class of a job's queries the cheapest evaluator that keeps a tolerance, as a sample of
 /// them tells at 95% confidence. Candidates are pyramids of several precisions, mixtures, and `triangles`,
@@ -68,11 +47,16 @@ class AutoEvaluator : public Evaluator {
   /// classes go to `triangles`, and so do those of classes that are too small to repay a structure.
   void calibrate(const CalibrationSample& sample);
   double tolerance() const { return tolerance_; }
-  const std::vector<AutoChoice>& choices() const { return choices_; }
+  std::vector<AutoChoice> choices() const override { return choices_; }
+  /// Calibrates by a sample of these.
+  void calibrate(std::size_t count, const QuerySource& query, double scale) override;
+  /// Element by element, where images that are looked at keep the tolerance so.
+  std::unique_ptr<Painter> painter(std::size_t count, const QuerySource& footprint,
+                                   const ImageWindow& window) override;
 
   /// How far `density`, the answer to a query, may be off: the class's error at 95% confidence, of the
   /// density where that is larger than is typical, and else of its geometric mean with the typical one.
-  double error_estimate(const Query& query, double density) const;
+  double error_estimate(const Query& query, double density) const override;
 
   std::unique_ptr<PendingDensities> start(const std::vector<Query>& queries) override;
   std::string name() const override { return "auto"; }

@@ -64,7 +64,7 @@ std::array<double, 4> even_uniforms(std::uint64_t key, int n) {
 
 }  // namespace
 
-BeckmannBrdf::BeckmannBrdf(Device& device, const Surface& surface, const PatchBrdfSettings& settings)
+BeckmannBrdf::BeckmannBrdf(Device& device, const Surface& surface, const BeckmannBrdfSettings& settings)
     : masking_(settings.masking),
       lobes_(build_lobes(surface, settings.elements)),
       grid_{lobes_.grid, lobes_.slope_unit, lobes_.spread_unit, surface.interpolation(), settings.elements},

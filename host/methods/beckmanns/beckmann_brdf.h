@@ -2,14 +2,21 @@
 
 #include <optional>
 
+#include "host/base/masking.h"
 #include "host/base/stopwatch.h"
 #include "host/methods/beckmanns/lobe_query.h"
 #include "host/methods/beckmanns/lobe_sampler.h"
 #include "host/methods/beckmanns/slope_footprint.h"
-#include "host/methods/make_patch_brdf.h"
 #include "host/methods/map/map_batches.h"
+#include "host/methods/patch_brdf.h"
 
 namespace mica::host {
+
+struct BeckmannBrdfSettings {
+  Masking masking = Masking::exact;
+  int elements = 1;                        ///< lobes a texel and axis
+  std::optional<WaveForm> wave_form = {};  ///< default: what suits the device
+};
 
 /// `beckmanns`: the BRDF of a mixture of Beckmann lobes, [Che18] Eq. 7, without Fresnel:
 ///     f_P(o, i) = D_P(h) / (4 I(o) I(i)),    I(o) = A_P(o) / G1(o) = integral of <o, w> D_P(w) dw    (Eq.
@@ -18,7 +25,7 @@ namespace mica::host {
 class BeckmannBrdf : public PatchBrdf {
  public:
   /// Builds the mixture and uploads it. Throws what `build_lobes` throws.
-  BeckmannBrdf(Device& device, const Surface& surface, const PatchBrdfSettings& settings);
+  BeckmannBrdf(Device& device, const Surface& surface, const BeckmannBrdfSettings& settings);
 
   std::vector<BrdfValue> evaluate(const std::vector<BrdfQuery>& queries) override;
   /// Light counts as the patch receives it, by the projected area A(i) of its mean normal and not by i.g: the

@@ -1,8 +1,8 @@
 #pragma once
 
+#include "host/base/glints_description.h"
 #include "host/methods/grid/grid_evaluator.h"
 #include "host/methods/patch_brdf.h"
-#include "host/scene/glints_description.h"
 
 namespace mica::host {
 

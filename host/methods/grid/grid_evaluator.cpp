@@ -25,7 +25,7 @@ std::string grid_kernel_options(Distribution distribution, const GridFeatures& f
 }
 
 /// Queries on the device and the memory that it reads and writes meanwhile.
-class PendingGrid : public GridDensities {
+class PendingGrid : public PendingDensities {
  public:
   PendingGrid(std::size_t queries, int colors) : rows(static_cast<std::size_t>(colors)) {
     for (std::vector<float>& row : rows) row.resize(queries);
@@ -75,11 +75,11 @@ GridEvaluator::GridEvaluator(Device& device, const GlintGrid& grid, std::optiona
 }
 
 std::unique_ptr<PendingDensities> GridEvaluator::start(const std::vector<Query>& queries) {
-  return start(queries, {grid_.point()});
+  return start_at(queries, {grid_.point()});
 }
 
-std::unique_ptr<GridDensities> GridEvaluator::start(const std::vector<Query>& queries,
-                                                    const std::vector<GlintPoint>& points) {
+std::unique_ptr<PendingDensities> GridEvaluator::start_at(const std::vector<Query>& queries,
+                                                          const std::vector<GlintPoint>& points) {
   auto pending = std::make_unique<PendingGrid>(queries.size(), features_.colors);
   pending->device_seconds = device_seconds_;
   for (std::size_t first = 0; first < queries.size(); first += batch_queries_) {

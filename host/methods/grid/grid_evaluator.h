@@ -11,13 +11,6 @@
 
 namespace mica::host {
 
-/// Densities of glints, of all colours together and of each.
-class GridDensities : public PendingDensities {
- public:
-  /// What glints of one colour add to D of a query. Call after `wait`, when there is more than one colour.
-  virtual float density_of_color(std::size_t color, std::size_t query) const = 0;
-};
-
 /// What the kernel is compiled for.
 struct GridFeatures {
   int colors = 1;         ///< of glints, 1 to 8; each glint has one of them, at random
@@ -40,8 +33,8 @@ class GridEvaluator : public Evaluator {
   /// All queries must pass `grid_query_problem`.
   std::unique_ptr<PendingDensities> start(const std::vector<Query>& queries) override;
   /// @param points what the glints are at each query; all of the evaluator's distribution.
-  std::unique_ptr<GridDensities> start(const std::vector<Query>& queries,
-                                       const std::vector<GlintPoint>& points);
+  std::unique_ptr<PendingDensities> start_at(const std::vector<Query>& queries,
+                                             const std::vector<GlintPoint>& points) override;
   std::string name() const override { return "grid"; }
   std::size_t device_bytes() const override { return 0; }
   double build_seconds() const override { return 0; }

@@ -32,6 +32,8 @@ class PyramidEvaluator : public Evaluator {
   std::unique_ptr<PendingDensities> start(const std::vector<Query>& queries) override {
     return start(queries, false);
   }
+  std::unique_ptr<Painter> painter(std::size_t count, const QuerySource& footprint,
+                                   const ImageWindow& window) override;
   std::string name() const override { return "pyramid"; }
   /// Without a store that was given.
   std::size_t device_bytes() const override;

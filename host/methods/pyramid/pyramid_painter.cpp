@@ -124,4 +124,8 @@ std::vector<float> PyramidPainter::paint_queries(const std::vector<Query>& footp
   return images;
 }
 
+std::unique_ptr<Painter> PyramidEvaluator::painter(std::size_t, const QuerySource&, const ImageWindow&) {
+  return std::make_unique<PyramidPainter>(device_, surface_, *this);
+}
+
 }  // namespace mica::host

@@ -12,13 +12,13 @@ namespace mica::host {
 /// Images of P-NDFs with the accuracy of `pyramid`, element by element into the image and not query by query:
 /// merged elements where the pyramid has a level for the footprint, pieces of the texels' triangles where it
 /// has none. What neither can draw goes query by query.
-class PyramidPainter {
+class PyramidPainter : public Painter {
  public:
   /// All must outlive the painter.
   PyramidPainter(Device& device, const Surface& surface, PyramidEvaluator& pyramid);
 
   /// One image a query, whose half vector does not matter; 0 off the disk.
-  std::vector<float> paint(const std::vector<Query>& footprints, const ImageWindow& window);
+  std::vector<float> paint(const std::vector<Query>& footprints, const ImageWindow& window) override;
 
   /// Who draws a footprint.
   enum class Way { level, texels, queries };

@@ -5,6 +5,7 @@
 #include "host/device/device.h"
 #include "host/methods/evaluator.h"
 #include "host/methods/map/map_batches.h"
+#include "host/methods/standard.h"
 #include "host/surface/surface.h"
 #include "kernels/types.h"
 
@@ -28,6 +29,9 @@ class TriangleEvaluator : public Evaluator {
   TriangleEvaluator(Device& device, const Surface& surface, const TriangleSettings& settings = {});
 
   std::unique_ptr<PendingDensities> start(const std::vector<Query>& queries) override;
+  double error_estimate(const Query& query, double density) const override {
+    return relative_bound(query.roughness) * density;
+  }
   std::string name() const override { return "triangles"; }
   std::size_t device_bytes() const override { return batches_->device_bytes(); }
   double build_seconds() const override { return build_seconds_; }

@@ -50,7 +50,7 @@ TEST_P(GlintProcess, IsItsDefinition) {
   GlintGrid grid;
   grid.distribution = GetParam();
   GridEvaluator evaluator(device_, grid, {}, 1000, {colors, true});
-  const auto pending = evaluator.start(sample.queries, sample.points);
+  const auto pending = evaluator.start_at(sample.queries, sample.points);
   const std::vector<float> densities = pending->wait();
   double worst = 0;
   for (std::size_t n = 0; n < densities.size(); ++n) {
@@ -85,7 +85,7 @@ TEST_P(GlintProcess, HasItsShareOnAverage) {
       sample.queries[n].footprint.cov_uv *= 9e-6;  // three cells
       sample.queries[n].roughness = 0.05;
     }
-    const auto pending = evaluator.start(sample.queries, sample.points);
+    const auto pending = evaluator.start_at(sample.queries, sample.points);
     const std::vector<float> densities = pending->wait();
     double sum = 0, squares = 0, of_color[colors] = {};
     for (std::size_t n = 0; n < densities.size(); ++n) {

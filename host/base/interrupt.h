@@ -1,6 +1,6 @@
 #pragma once
 
-namespace mica::host::app {
+namespace mica::host {
 
 /// Thrown by `check_interrupt` after SIGINT or SIGTERM; unwinding removes temporary files.
 class Interrupted {
@@ -18,4 +18,4 @@ void catch_interrupts();
 /// Throws Interrupted when one has come. Long work calls it between batches.
 void check_interrupt();
 
-}  // namespace mica::host::app
+}  // namespace mica::host

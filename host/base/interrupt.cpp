@@ -1,8 +1,8 @@
-#include "host/app/interrupt.h"
+#include "host/base/interrupt.h"
 
 #include <csignal>
 
-namespace mica::host::app {
+namespace mica::host {
 namespace {
 
 volatile std::sig_atomic_t received = 0;  // a signal handler can reach nothing else
@@ -23,4 +23,4 @@ void check_interrupt() {
   if (received) throw Interrupted(received);
 }
 
-}  // namespace mica::host::app
+}  // namespace mica::host

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "host/base/masking.h"
+#include "host/methods/gaussians/mixture_settings.h"
+
+namespace mica::host {
+
+/// Settings of `beckmanns`, for jobs and calls.
+class BeckmannSettings : public SettingsOf<BeckmannSettings> {
+ public:
+  void visit(SettingVisitor& visitor) override {
+    visitor.choice("masking",
+                   "Of a BRDF: of every lobe under the footprint, of one lobe with their moments, or of the "
+                   "map's roughness",
+                   masking, masking_names());
+    visitor.whole("elements",
+                  "Elements of a mixture, a texel and axis: more are slower and closer to the map", elements,
+                  1, kMaxElements);
+  }
+
+  Masking masking = Masking::exact;
+  int elements = 1;
+};
+
+}  // namespace mica::host

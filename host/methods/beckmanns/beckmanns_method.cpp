@@ -1,0 +1,86 @@
+#include <fmt/format.h>
+
+#include "host/methods/beckmanns/beckmann_brdf.h"
+#include "host/methods/beckmanns/beckmann_evaluator.h"
+#include "host/methods/beckmanns/beckmann_settings.h"
+#include "host/methods/beckmanns/beckmann_standard.h"
+#include "host/methods/beckmanns/lobes.h"
+#include "host/methods/beckmanns/slope_pyramid.h"
+#include "host/methods/method.h"
+
+namespace mica::host {
+namespace {
+
+class BeckmannsMethod : public Method {
+ public:
+  std::string name() const override { return "beckmanns"; }
+  std::string summary() const override {
+    return "a mixture of Beckmann lobes, with a BRDF and masking of its own [Che18]";
+  }
+  MethodTraits traits() const override {
+    MethodTraits traits;
+    traits.brdf = traits.lit_by_brdf = true;
+    return traits;
+  }
+  bool takes(Interpolation interpolation) const override { return interpolation != Interpolation::bicubic; }
+  std::unique_ptr<MethodSettings> settings() const override { return std::make_unique<BeckmannSettings>(); }
+
+  /// Geometric masking knows one roughness for the whole map, filtered masking one lobe for a patch: only
+  /// exact masking is normalised.
+  bool conserves_energy(const MethodSettings& settings) const override {
+    return settings_as<BeckmannSettings>(settings).masking == Masking::exact;
+  }
+
+  StructureSize structure(const StructureAsked& asked, const MethodSettings& settings) const override {
+    const auto& own = settings_as<BeckmannSettings>(settings);
+    StructureSize size;
+    size.device_bytes =
+        (asked.densities ? 2 : 1) * lobe_structure_bytes(asked.width, asked.height, own.elements);
+    size.kernel = "beckmanns.cl";
+    if (own.masking != Masking::geometric) {
+      size.device_bytes +=
+          slope_pyramid_bytes(asked.width * own.elements, asked.height * own.elements, false);
+      size.kernel = "beckmann_patches.cl";
+    }
+    return size;
+  }
+
+  std::unique_ptr<Evaluator> make(Device* device, const Surface* surface,
+                                  const MethodSettings& settings) const override {
+    MixtureSettings mixture;
+    mixture.elements = settings_as<BeckmannSettings>(settings).elements;
+    return std::make_unique<BeckmannEvaluator>(*device, *surface, mixture);
+  }
+
+  std::unique_ptr<PatchBrdf> make_brdf(Device* device, const Surface* surface,
+                                       const MethodSettings& settings) const override {
+    const auto& own = settings_as<BeckmannSettings>(settings);
+    BeckmannBrdfSettings brdf;
+    brdf.masking = own.masking, brdf.elements = own.elements;
+    return std::make_unique<BeckmannBrdf>(*device, *surface, brdf);
+  }
+
+  std::unique_ptr<Standard> standard(const Surface* surface, const reference::Oracle*,
+                                     const MethodSettings& settings) const override {
+    return std::make_unique<BeckmannStandard>(*surface, settings_as<BeckmannSettings>(settings).elements);
+  }
+
+  std::vector<MethodVariant> variants(const std::vector<int>& elements) const override {
+    std::vector<MethodVariant> all;
+    for (const int count : elements) {
+      auto settings = std::make_unique<BeckmannSettings>();
+      settings->elements = count;
+      all.push_back({std::move(settings), fmt::format("{}, {} a texel and axis", name(), count),
+                     fmt::format("{}", count)});
+    }
+    return all;
+  }
+};
+
+}  // namespace
+
+std::shared_ptr<const Method> beckmanns_method() {
+  return std::make_shared<BeckmannsMethod>();
+}
+
+}  // namespace mica::host

@@ -1,0 +1,70 @@
+#include "host/methods/method.h"
+
+#include <fmt/format.h>
+
+#include "host/methods/evaluator.h"
+#include "host/methods/map/map_query.h"
+#include "host/methods/patch_brdf.h"
+#include "host/methods/standard.h"
+#include "host/surface/surface.h"
+#include "mica/error.h"
+
+namespace mica::host {
+
+std::unique_ptr<MethodSettings> Method::settings() const {
+  return std::make_unique<NoSettings>();
+}
+
+void Method::check(const MethodSettings& settings) const {
+  if (settings.tolerance && !traits().keeps_tolerance)
+    throw UsageError(fmt::format("tolerance {}: {} promises no error", *settings.tolerance, name()));
+}
+
+bool Method::share(const MethodSettings& a, const MethodSettings& b, bool) const {
+  return describe(a) == describe(b);
+}
+
+std::unique_ptr<Evaluator> Method::make(Device*, const Surface*, const MethodSettings&) const {
+  refuse_densities();
+}
+
+std::unique_ptr<PatchBrdf> Method::make_brdf(Device*, const Surface*, const MethodSettings&) const {
+  refuse_brdf();
+}
+
+std::string Method::query_problem(const Query& query, const Surface* surface) const {
+  return host::query_problem(query, surface->width(), surface->height());
+}
+
+std::unique_ptr<Standard> Method::standard(const Surface*, const reference::Oracle*,
+                                           const MethodSettings&) const {
+  return nullptr;
+}
+
+std::vector<MethodVariant> Method::variants(const std::vector<int>&) const {
+  std::vector<MethodVariant> all;
+  all.push_back({settings(), name(), ""});
+  return all;
+}
+
+OperationCounter Method::counter(Device*, const Surface*, const MethodSettings&) const {
+  return {};
+}
+
+void Method::refuse_brdf() const {
+  throw UsageError(fmt::format("\"{}\" has no BRDF of its own", name()));
+}
+
+void Method::refuse_densities() const {
+  throw UsageError(fmt::format("\"{}\" has no density; it answers for its BRDF alone", name()));
+}
+
+std::string view_problem(const Method& method, const ViewQuery& query, const Surface* surface) {
+  return method.query_problem({query.footprint, Eigen::Vector2d::Zero(), query.roughness}, surface);
+}
+
+void refuse_settings() {
+  throw UsageError("settings: found those of another method; expected those that the method itself made");
+}
+
+}  // namespace mica::host

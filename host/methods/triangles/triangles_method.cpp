@@ -1,0 +1,79 @@
+#include <fmt/format.h>
+
+#include "host/methods/map/map_structure.h"
+#include "host/methods/method.h"
+#include "host/methods/standard.h"
+#include "host/methods/triangles/triangle_evaluator.h"
+#include "host/reference/oracle.h"
+#include "mica/error.h"
+
+namespace mica::host {
+namespace {
+
+constexpr double kTrianglesTolerance = 1e-4;
+
+/// The map itself, in double precision.
+class MapStandard : public Standard {
+ public:
+  explicit MapStandard(const reference::Oracle& oracle) : oracle_(oracle) {}
+
+  std::vector<double> references(const std::vector<Query>& queries) const override {
+    std::vector<double> densities;
+    for (const reference::OracleResult& result : oracle_.evaluate(queries))
+      densities.push_back(result.density);
+    return densities;
+  }
+  Promise promise(double roughness) const override { return {relative_bound(roughness), kPeakBound}; }
+  bool is_the_map() const override { return true; }
+  double highest(const Query& query) const override { return (1 + 2e-3) * lobe_peak(query); }
+
+ private:
+  const reference::Oracle& oracle_;
+};
+
+class TrianglesMethod : public Method {
+ public:
+  std::string name() const override { return "triangles"; }
+  std::string summary() const override { return "the triangulated map, integrated exactly [Yan14]"; }
+  MethodTraits traits() const override {
+    MethodTraits traits;
+    traits.estimates_errors = traits.surface_normals = traits.keeps_tolerance = true;
+    return traits;
+  }
+
+  void check(const MethodSettings& settings) const override {
+    if (settings.tolerance && !(*settings.tolerance >= kTrianglesTolerance))
+      throw UsageError(
+          fmt::format("tolerance {}: triangles keeps a relative error of {}; for less use reference",
+                      *settings.tolerance, kTrianglesTolerance));
+  }
+
+  StructureSize structure(const StructureAsked& asked, const MethodSettings&) const override {
+    return {map_structure_bytes(asked.width, asked.height), 0,
+            fmt::format("triangles.cl -DMICA_INTERPOLATION={}", static_cast<int>(asked.interpolation))};
+  }
+
+  std::unique_ptr<Evaluator> make(Device* device, const Surface* surface,
+                                  const MethodSettings&) const override {
+    return std::make_unique<TriangleEvaluator>(*device, *surface);
+  }
+
+  std::unique_ptr<Standard> standard(const Surface*, const reference::Oracle* map,
+                                     const MethodSettings&) const override {
+    return std::make_unique<MapStandard>(*map);
+  }
+
+  OperationCounter counter(Device* device, const Surface* surface, const MethodSettings&) const override {
+    TriangleSettings settings;
+    settings.count_flops = true;
+    return {std::make_unique<TriangleEvaluator>(*device, *surface, settings), 1};
+  }
+};
+
+}  // namespace
+
+std::shared_ptr<const Method> triangles_method() {
+  return std::make_shared<TrianglesMethod>();
+}
+
+}  // namespace mica::host
