@@ -1,6 +1,18 @@
 # A folder of host/ is a target, compiled in one or a few pieces: most of a file's compile time is the headers that
 # its neighbours include as well.
 
+# mica_headers(TARGET KIND HEADER...): the headers of other people, parsed once for all targets of a kind. The first one
+# keeps them. Targets of a kind have the same flags: objects are position independent otherwise than programs are.
+function(mica_headers target kind)
+  get_property(first GLOBAL PROPERTY MICA_HEADERS_OF_${kind})
+  if(first)
+    target_precompile_headers(${target} REUSE_FROM ${first})
+  else()
+    target_precompile_headers(${target} PRIVATE ${ARGN})
+    set_property(GLOBAL PROPERTY MICA_HEADERS_OF_${kind} ${target})
+  endif()
+endfunction()
+
 # mica_folder(FOLDER [NOT_IN_LIBRARY]): host/FOLDER/*.cpp as objects, which mica_collect gives to a library.
 function(mica_folder folder)
   cmake_parse_arguments(PARSE_ARGV 1 arg "NOT_IN_LIBRARY" "" "")
@@ -14,6 +26,7 @@ function(mica_folder folder)
   # Types of an unnamed namespace have their linkage in the file that a unit includes as well as in the unit.
   target_compile_options(${name} PRIVATE -Wno-subobject-linkage)
   target_link_libraries(${name} PRIVATE mica_options mica_libraries)
+  mica_headers(${name} OBJECTS ${PROJECT_SOURCE_DIR}/cmake/headers.h)
   if(NOT arg_NOT_IN_LIBRARY)
     set_property(GLOBAL APPEND PROPERTY MICA_FOLDERS ${name})
   endif()
@@ -37,5 +50,5 @@ function(mica_embed_kernels target)
     DEPENDS ${kernels} ${PROJECT_SOURCE_DIR}/cmake/EmbedKernels.cmake
     COMMENT "Embedding kernels")
   target_sources(${target} PRIVATE ${output})
-  set_source_files_properties(${output} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+  set_source_files_properties(${output} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON SKIP_PRECOMPILE_HEADERS ON)
 endfunction()

@@ -15,7 +15,7 @@
 #include "mica/error.h"
 #include "tests/reference/fifty_digits.h"
 
-namespace mica::host::reference {
+namespace mica::host::reference::oracle_test {
 namespace {
 
 double random_number(int stream, std::uint64_t index) {
@@ -349,4 +349,4 @@ TEST(Oracle, RefusesWhatHasNoAnswer) {
 }
 
 }  // namespace
-}  // namespace mica::host::reference
+}  // namespace mica::host::reference::oracle_test

@@ -7,7 +7,7 @@
 #include "host/scene/footprint.h"
 #include "host/scene/geometry.h"
 
-namespace mica::host {
+namespace mica::host::footprint_test {
 namespace {
 
 using Eigen::Matrix2d;
@@ -112,4 +112,4 @@ TEST(FootprintCovariance, IsSymmetricToTheLastBit) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::footprint_test

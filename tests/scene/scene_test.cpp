@@ -14,7 +14,7 @@
 #include "host/scene/scene.h"
 #include "mica/error.h"
 
-namespace mica::host {
+namespace mica::host::scene_test {
 namespace {
 
 using Eigen::Vector2d;
@@ -339,4 +339,4 @@ TEST(Scene, RefusesWhatMakesNoSense) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::scene_test
