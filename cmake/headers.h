@@ -1,11 +1,10 @@
-// What most sources include of other people's headers, parsed once a build. A source still includes what it uses.
-#pragma once
+// What most sources include of other people's headers, parsed once a build. A source still includes what it
+// uses.
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <tbb/parallel_for.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -20,7 +19,6 @@
 #include <limits>
 #include <map>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <numeric>
 #include <optional>
 #include <random>

@@ -10,6 +10,7 @@
 #include "host/app/interrupt.h"
 #include "host/app/json_file.h"
 #include "host/app/output.h"
+#include "host/app/selftest_tables.h"
 #include "host/methods/gaussians/mixture_evaluator.h"
 #include "host/methods/make_evaluator.h"
 #include "host/reference/gaussian_mixture.h"
@@ -17,7 +18,6 @@
 #include "host/verify/device_checks.h"
 #include "host/verify/grid_checks.h"
 #include "host/verify/pyramid_checks.h"
-#include "host/verify/selftest_tables.h"
 
 namespace mica::host::app {
 namespace {

@@ -1,4 +1,4 @@
-#include "host/verify/selftest_tables.h"
+#include "host/app/selftest_tables.h"
 
 #include <fmt/format.h>
 
