@@ -20,15 +20,17 @@ function(lint_target name)
 endfunction()
 
 # Each kernel file in every variant that the host may ask for, and each header alone in both forms of a wave.
-file(GLOB_RECURSE kernel_programs CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/kernels/*.cl)
-file(GLOB_RECURSE kernel_headers CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/kernels/*.h)
-set(compile_kernel ${CLANG} -x cl -cl-std=CL1.2 -fsyntax-only -Wall -Wextra -Werror -Xclang -finclude-default-header
-                   -I ${CMAKE_SOURCE_DIR}/kernels)
+set(kernels ${CMAKE_SOURCE_DIR}/kernels)
+file(GLOB_RECURSE kernel_programs CONFIGURE_DEPENDS ${kernels}/*.cl)
+file(GLOB_RECURSE kernel_headers CONFIGURE_DEPENDS ${kernels}/*.h)
+set(parts map/catmull_rom.h map/texel_quads.h map/walk_leaves.h pyramid/walk_records.h)  # of what includes them
+set(of_records images/pyramid_images.cl pyramid/pyramid.cl)  # whose width is a variant
+set(compile_kernel ${CLANG} -x cl -cl-std=CL1.2 -fsyntax-only -Wall -Wextra -Werror -I ${kernels})
 set(kernel_stamps)
 foreach(file ${kernel_programs} ${kernel_headers})
-  get_filename_component(name ${file} NAME)
-  if(name MATCHES "^(catmull_rom|texel_quads|walk_leaves|walk_records)\\.h$")
-    continue()  # parts of the kernels that include them, whose types they use
+  file(RELATIVE_PATH name ${kernels} ${file})
+  if(name IN_LIST parts)
+    continue()
   endif()
   set(commands)
   foreach(wave_items 0 1)
@@ -39,12 +41,13 @@ foreach(file ${kernel_programs} ${kernel_headers})
         list(APPEND commands COMMAND ${compile_kernel} -DMICA_WAVE_ITEMS=${wave_items}
                                      -DMICA_INTERPOLATION=${interpolation} ${file})
       endforeach()
-      if(name MATCHES "^pyramid")
+      if(name IN_LIST of_records)
         list(APPEND commands COMMAND ${compile_kernel} -DMICA_WAVE_ITEMS=${wave_items} -DMICA_RECORD_BITS=8 ${file})
       endif()
     endif()
   endforeach()
-  set(stamp ${CMAKE_BINARY_DIR}/lint/${name}.kernel)
+  string(REPLACE / - stamp ${name})
+  set(stamp ${CMAKE_BINARY_DIR}/lint/${stamp}.kernel)
   add_custom_command(
     OUTPUT ${stamp} ${commands}
     COMMAND ${CMAKE_COMMAND} -E touch ${stamp}
@@ -54,30 +57,42 @@ foreach(file ${kernel_programs} ${kernel_headers})
 endforeach()
 lint_target(lint_kernels ${kernel_stamps})
 
-file(GLOB_RECURSE cpp_sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/host/*.cpp)
-file(GLOB_RECURSE cpp_headers CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/host/*.h)
-file(GLOB_RECURSE cpp_others CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/tests/*.cpp ${CMAKE_SOURCE_DIR}/tests/*.h
-     ${CMAKE_SOURCE_DIR}/bench/*.cpp ${CMAKE_SOURCE_DIR}/bench/*.h ${CMAKE_SOURCE_DIR}/tools/*.cpp)
-
+set(formatted)
+foreach(folder host include kernels samples tests bench tools)
+  foreach(ending cpp h cl)
+    file(GLOB_RECURSE files CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/${folder}/*.${ending})
+    list(APPEND formatted ${files})
+  endforeach()
+endforeach()
 set(format_stamp ${CMAKE_BINARY_DIR}/lint/format)
 add_custom_command(
   OUTPUT ${format_stamp}
-  COMMAND ${CLANG_FORMAT} --dry-run -Werror ${cpp_sources} ${cpp_headers} ${cpp_others}
+  COMMAND ${CLANG_FORMAT} --dry-run -Werror ${formatted}
   COMMAND ${CMAKE_COMMAND} -E touch ${format_stamp}
-  DEPENDS ${cpp_sources} ${cpp_headers} ${cpp_others} ${CMAKE_SOURCE_DIR}/.clang-format
+  DEPENDS ${formatted} ${CMAKE_SOURCE_DIR}/.clang-format
   COMMENT "Checking the layout of sources")
 lint_target(lint_format ${format_stamp})
 
+# clang-tidy looks at the units that are compiled: most of its time goes into the headers that their sources share. It
+# cannot read the other compiler's precompiled ones, so its commands are without.
+set(tidy_commands ${CMAKE_BINARY_DIR}/lint/compile_commands.json)
+add_custom_command(
+  OUTPUT ${tidy_commands}
+  COMMAND sed "s/ -Winvalid-pch -include [^ ]*//" ${CMAKE_BINARY_DIR}/compile_commands.json > ${tidy_commands}
+  DEPENDS ${CMAKE_BINARY_DIR}/compile_commands.json)
+file(GLOB_RECURSE cpp_headers CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/host/*.h ${CMAKE_SOURCE_DIR}/include/*.h)
+get_property(units GLOBAL PROPERTY MICA_UNITS)
 set(tidy_stamps)
-foreach(file ${cpp_sources})
-  file(RELATIVE_PATH name ${CMAKE_SOURCE_DIR}/host ${file})
-  string(REPLACE / - name ${name})
+foreach(unit ${units})
+  get_property(sources GLOBAL PROPERTY MICA_SOURCES_${unit})
+  string(REGEX REPLACE "^.*/(CMakeFiles|host)/" "" name ${unit})
+  string(REGEX REPLACE "\\.dir/Unity/|/" "-" name ${name})
   set(stamp ${CMAKE_BINARY_DIR}/lint/${name}.tidy)
   add_custom_command(
     OUTPUT ${stamp}
-    COMMAND ${CLANG_TIDY} --quiet -p ${CMAKE_BINARY_DIR} ${file}
+    COMMAND ${CLANG_TIDY} --quiet --config-file=${CMAKE_SOURCE_DIR}/.clang-tidy -p ${CMAKE_BINARY_DIR}/lint ${unit}
     COMMAND ${CMAKE_COMMAND} -E touch ${stamp}
-    DEPENDS ${file} ${cpp_headers} ${CMAKE_SOURCE_DIR}/.clang-tidy ${CMAKE_SOURCE_DIR}/kernels/types.h
+    DEPENDS ${unit} ${sources} ${cpp_headers} ${CMAKE_SOURCE_DIR}/.clang-tidy ${kernels}/types.h ${tidy_commands}
     COMMENT "Checking ${name} with clang-tidy")
   list(APPEND tidy_stamps ${stamp})
 endforeach()

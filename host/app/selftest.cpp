@@ -9,6 +9,7 @@
 #include "host/app/exit_code.h"
 #include "host/app/json_file.h"
 #include "host/app/output.h"
+#include "host/app/selftest_tables.h"
 #include "host/base/interrupt.h"
 #include "host/methods/gaussians/mixture_evaluator.h"
 #include "host/methods/standard.h"
@@ -17,7 +18,6 @@
 #include "host/verify/device_checks.h"
 #include "host/verify/grid_checks.h"
 #include "host/verify/pyramid_checks.h"
-#include "host/verify/selftest_tables.h"
 
 namespace mica::host::app {
 namespace {

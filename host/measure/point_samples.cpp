@@ -1,11 +1,11 @@
 #include "host/measure/point_samples.h"
 
 #include <tbb/parallel_for.h>
-#include <Eigen/Cholesky>
 
 #include <cmath>
 
 #include "host/base/constants.h"
+#include "host/base/symmetric_matrix.h"
 #include "host/surface/interpolate.h"
 #include "host/surface/random.h"
 
@@ -14,7 +14,7 @@ namespace {
 
 double point_sample_mean(const Surface& surface, const Query& query, std::int64_t samples, std::uint64_t seed,
                          std::size_t n) {
-  const Eigen::Matrix2d factor = query.footprint.cov_uv.llt().matrixL();
+  const Eigen::Matrix2d factor = cholesky_factor(query.footprint.cov_uv);
   const Eigen::Vector2d texels(surface.width(), surface.height());
   const double k = 0.5 / (query.roughness * query.roughness);
   double sum = 0;

@@ -1,20 +1,17 @@
 #include "host/microfacet/visible_normals.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "host/base/constants.h"
+#include "host/base/symmetric_matrix.h"
 
 namespace mica::host {
-namespace {}  // namespace
-
 VisibleNormals::VisibleNormals(const Eigen::Matrix2d& slope_moments) {
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver;
-  solver.computeDirect(slope_moments);
-  axes_ = solver.eigenvectors();
+  const PrincipalAxes axes = principal_axes_directly(slope_moments);
+  axes_ = axes.eigenvectors;
   // A Beckmann alpha is sqrt(2) standard deviations of the slope.
-  alphas_ = (2 * solver.eigenvalues()).cwiseMax(1e-12).cwiseSqrt();
+  alphas_ = (2 * axes.eigenvalues).cwiseMax(1e-12).cwiseSqrt();
 }
 
 Eigen::Vector3d VisibleNormals::sample(const Eigen::Vector3d& view, const Eigen::Vector2d& uniform) const {

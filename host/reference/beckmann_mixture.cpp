@@ -2,11 +2,12 @@
 
 #include <tbb/parallel_for.h>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
+
+#include "host/base/symmetric_matrix.h"
 
 namespace mica::host::reference {
 namespace {
@@ -117,9 +118,9 @@ BeckmannMixture::BeckmannMixture(const Surface& surface, int elements)
 std::vector<SlopeLobe> BeckmannMixture::lobes(const Footprint& footprint, double roughness) const {
   const double k = kernel_variance();
   const Eigen::DiagonalMatrix<double, 2> spacings(static_cast<double>(width_), static_cast<double>(height_));
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(spacings * footprint.cov_uv * spacings);
-  const Eigen::Vector2d variances = (axes.eigenvalues().array() - k).max(k);
-  const Eigen::Matrix2d cov = axes.eigenvectors() * variances.asDiagonal() * axes.eigenvectors().transpose();
+  const PrincipalAxes axes = principal_axes(spacings * footprint.cov_uv * spacings);
+  const Eigen::Vector2d variances = (axes.eigenvalues.array() - k).max(k);
+  const Eigen::Matrix2d cov = axes.eigenvectors * variances.asDiagonal() * axes.eigenvectors.transpose();
   const Eigen::Matrix2d inverse = cov.inverse();
   const Eigen::Vector2d mean = spacings * footprint.mean_uv - Eigen::Vector2d(corner_, corner_),
                         extent = kReach * cov.diagonal().cwiseSqrt();

@@ -5,9 +5,9 @@
 #include <tbb/combinable.h>
 #include <tbb/parallel_for.h>
 
-#include <Eigen/Cholesky>
 #include <cmath>
 
+#include "host/base/symmetric_matrix.h"
 #include "host/reference/query_frame.h"
 #include "host/surface/interpolate.h"
 #include "host/surface/random.h"
@@ -84,7 +84,7 @@ BinnedNdf bin_normals(const Surface& surface, const Query& query, const BinningS
   check(settings);
   const QueryFrame frame(surface, query, 0);
   const Eigen::Vector2d& mean = frame.mean_texels();
-  const Eigen::Matrix2d factor = frame.cov_texels().llt().matrixL();
+  const Eigen::Matrix2d factor = cholesky_factor(frame.cov_texels());
 
   tbb::combinable<Histogram> histograms([&] { return Histogram(settings); });
   tbb::parallel_for(tbb::blocked_range<std::uint64_t>(0, settings.samples, 1 << 14),

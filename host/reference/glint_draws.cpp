@@ -1,11 +1,11 @@
 #include "host/reference/glint_draws.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
 #include "host/base/constants.h"
+#include "host/base/symmetric_matrix.h"
 
 namespace mica::host::reference {
 namespace {
@@ -73,7 +73,7 @@ double glint_draw_density(const GlintProcess& process, const Query& query) {
   const double resolution = std::sqrt(process.density), root = std::sqrt(process.stretch);
   const Eigen::DiagonalMatrix<double, 2> to_cells(resolution / root, resolution * root);
   Eigen::Matrix2d covariance = to_cells * query.footprint.cov_uv * to_cells;
-  const double sigma2 = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(covariance).eigenvalues()[1];
+  const double sigma2 = principal_axes(covariance).eigenvalues[1];
   const double detail = std::clamp(std::log2(8 * std::sqrt(std::max(sigma2, 1e-100))), 0.0, 24.0);
   const int finer = static_cast<int>(detail);
   covariance += std::pow(std::exp2(finer) / 128, 2) * Eigen::Matrix2d::Identity();

@@ -1,11 +1,11 @@
 #include "host/reference/glint_grid.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
 #include "host/base/constants.h"
+#include "host/base/symmetric_matrix.h"
 
 namespace mica::host::reference {
 namespace {
@@ -166,8 +166,7 @@ std::vector<double> GlintProcess::densities_of(const Query& query, int colors) c
   problem.sigma_angle = query.roughness * jacobian * Eigen::Vector2d(1 / root, root);
   problem.seed = seed, problem.share = share, problem.kept = kept;
 
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(problem.covariance);
-  const double sigma = std::sqrt(std::max(solver.eigenvalues()[1], 1e-100));
+  const double sigma = std::sqrt(std::max(principal_axes(problem.covariance).eigenvalues[1], 1e-100));
   const double detail = std::clamp(std::log2(8 * sigma), 0.0, 24.0);
   const int level = static_cast<int>(detail);
   problem.covariance += std::pow(std::exp2(level) / 128, 2) * Eigen::Matrix2d::Identity();

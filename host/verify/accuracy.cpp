@@ -1,9 +1,9 @@
 #include "host/verify/accuracy.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
+#include "host/base/symmetric_matrix.h"
 #include "host/surface/interpolate.h"
 #include "host/surface/random.h"
 
@@ -34,7 +34,7 @@ class Random {
 /// The normal at a point drawn from the footprint, or at its mean.
 Eigen::Vector2d normal_under(const Surface& surface, const Footprint& footprint, bool at_mean,
                              Random* random) {
-  const Eigen::Matrix2d factor = footprint.cov_uv.llt().matrixL();
+  const Eigen::Matrix2d factor = cholesky_factor(footprint.cov_uv);
   Eigen::Vector2d uv = footprint.mean_uv;
   if (!at_mean) uv += factor * random->normal();
   uv -= uv.array().floor().matrix();

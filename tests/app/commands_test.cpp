@@ -4,7 +4,7 @@
 
 #include "tests/app/command.h"
 
-namespace mica::host::app {
+namespace mica::host::app::commands_test {
 namespace {
 
 class Commands : public CommandTest {
@@ -153,4 +153,4 @@ TEST_F(Commands, HelpIsData) {
 }
 
 }  // namespace
-}  // namespace mica::host::app
+}  // namespace mica::host::app::commands_test

@@ -4,7 +4,7 @@
 
 #include "tests/app/command.h"
 
-namespace mica::host::app {
+namespace mica::host::app::eval_cavities_test {
 namespace {
 
 class EvalCavities : public CommandTest {
@@ -78,4 +78,4 @@ TEST_F(EvalCavities, RefusesWhatItDoesNotTake) {
 }
 
 }  // namespace
-}  // namespace mica::host::app
+}  // namespace mica::host::app::eval_cavities_test

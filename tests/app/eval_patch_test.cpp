@@ -5,7 +5,7 @@
 
 #include "tests/app/command.h"
 
-namespace mica::host::app {
+namespace mica::host::app::eval_patch_test {
 namespace {
 
 const std::string kPatch = "eval --map map.exr --ndf beckmanns --roughness 0.05 -o answers.npy --queries ";
@@ -111,4 +111,4 @@ TEST_F(EvalPatch, RowsThatAreNoQuestionsAreNamedAndNothingIsWritten) {
 }
 
 }  // namespace
-}  // namespace mica::host::app
+}  // namespace mica::host::app::eval_patch_test

@@ -6,7 +6,7 @@
 #include "host/reference/glint_grid.h"
 #include "tests/app/command.h"
 
-namespace mica::host::app {
+namespace mica::host::app::eval_test {
 namespace {
 
 class Eval : public CommandTest {
@@ -212,4 +212,4 @@ TEST_F(Eval, StopsOnInterruptAndLeavesNoFile) {
 }
 
 }  // namespace
-}  // namespace mica::host::app
+}  // namespace mica::host::app::eval_test

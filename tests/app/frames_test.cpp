@@ -5,7 +5,7 @@
 
 #include "tests/app/command.h"
 
-namespace mica::host::app {
+namespace mica::host::app::frames_test {
 namespace {
 
 constexpr int kSomeFailed = 1, kUsage = 2;
@@ -115,4 +115,4 @@ TEST_F(FramesCommand, RefuseWhatTheJobHasNot) {
 }
 
 }  // namespace
-}  // namespace mica::host::app
+}  // namespace mica::host::app::frames_test

@@ -4,7 +4,7 @@
 
 #include "tests/app/command.h"
 
-namespace mica::host::app {
+namespace mica::host::app::refusals_test {
 namespace {
 
 constexpr int kUsage = 2, kDevice = 3, kFile = 4;
@@ -166,4 +166,4 @@ INSTANTIATE_TEST_SUITE_P(
     name_of);
 
 }  // namespace
-}  // namespace mica::host::app
+}  // namespace mica::host::app::refusals_test

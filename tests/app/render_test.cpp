@@ -5,7 +5,7 @@
 
 #include "tests/app/command.h"
 
-namespace mica::host::app {
+namespace mica::host::app::render_test {
 namespace {
 
 constexpr int kUsage = 2, kDevice = 3, kFile = 4;
@@ -142,4 +142,4 @@ TEST_F(RenderCommand, RefusesWithTheRightCodeAndLeavesNoFile) {
 }
 
 }  // namespace
-}  // namespace mica::host::app
+}  // namespace mica::host::app::render_test

@@ -9,7 +9,7 @@
 #include "host/image/image.h"
 #include "tests/image/folder.h"
 
-namespace mica::host {
+namespace mica::host::read_test {
 namespace {
 
 using ReadRgb = FolderTest;
@@ -124,4 +124,4 @@ TEST_F(ReadRgb, PixelsMustBeFinite) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::read_test

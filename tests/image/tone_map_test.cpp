@@ -5,7 +5,7 @@
 
 #include "host/image/image.h"
 
-namespace mica::host {
+namespace mica::host::tone_map_test {
 namespace {
 
 TEST(ToneMap, AreTheirCurves) {
@@ -34,4 +34,4 @@ TEST(ToneMap, NeverFallAndStayInRange) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::tone_map_test

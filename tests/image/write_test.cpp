@@ -16,7 +16,7 @@
 #include "mica/error.h"
 #include "tests/image/folder.h"
 
-namespace mica::host {
+namespace mica::host::write_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -185,4 +185,4 @@ TEST_F(WriteImage, InconsistentImagesAreRefused) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::write_test

@@ -1,7 +1,7 @@
 // The keys of `ndf = "cavities"`, and what they refuse.
 #include "tests/job/job_text.h"
 
-namespace mica::host {
+namespace mica::host::cavities_test {
 namespace {
 
 using test::JobFolder;
@@ -41,4 +41,4 @@ TEST(CavitiesInAJob, RefuseWhatTheyDoNotTake) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::cavities_test

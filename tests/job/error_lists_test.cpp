@@ -1,6 +1,6 @@
 #include "tests/job/job_text.h"
 
-namespace mica::host::test {
+namespace mica::host::test::error_lists_test {
 namespace {
 
 std::string message_of(const JobFolder& folder, const std::string& text) {
@@ -163,4 +163,4 @@ TEST(Files, UnreadableJobIsAFileError) {
 }
 
 }  // namespace
-}  // namespace mica::host::test
+}  // namespace mica::host::test::error_lists_test

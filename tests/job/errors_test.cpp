@@ -1,6 +1,6 @@
 #include "tests/job/job_text.h"
 
-namespace mica::host::test {
+namespace mica::host::test::errors_test {
 namespace {
 
 /// One mistake: the first `from` of the least job is replaced by `to`, where `@` marks the place to be named.
@@ -234,4 +234,4 @@ const std::vector<Mistake> contradictions = {
 INSTANTIATE_TEST_SUITE_P(Contradiction, Errors, testing::ValuesIn(contradictions));
 
 }  // namespace
-}  // namespace mica::host::test
+}  // namespace mica::host::test::errors_test

@@ -1,7 +1,7 @@
 // Frames and keyframes of a job.
 #include "tests/job/job_text.h"
 
-namespace mica::host::test {
+namespace mica::host::test::frames_test {
 namespace {
 
 struct FramesOfAJob : testing::Test {
@@ -64,4 +64,4 @@ TEST_F(FramesOfAJob, ToneMapsHaveNames) {
 }
 
 }  // namespace
-}  // namespace mica::host::test
+}  // namespace mica::host::test::frames_test

@@ -1,6 +1,6 @@
 #include "tests/job/job_text.h"
 
-namespace mica::host::test {
+namespace mica::host::test::glints_test {
 namespace {
 
 /// A job with one material of glints, which `keys` describe.
@@ -98,4 +98,4 @@ INSTANTIATE_TEST_SUITE_P(
                             "found glints with a direction on three planes"}));
 
 }  // namespace
-}  // namespace mica::host::test
+}  // namespace mica::host::test::glints_test

@@ -1,6 +1,6 @@
 #include "tests/job/job_text.h"
 
-namespace mica::host::test {
+namespace mica::host::test::overrides_test {
 namespace {
 
 TEST(Overrides, ReplaceAndAddValues) {
@@ -121,4 +121,4 @@ TEST(Overrides, MayNotBringInFurtherLines) {
 }
 
 }  // namespace
-}  // namespace mica::host::test
+}  // namespace mica::host::test::overrides_test

@@ -2,7 +2,7 @@
 #include "host/job/toml_document.h"
 #include "tests/job/job_text.h"
 
-namespace mica::host::test {
+namespace mica::host::test::robustness_test {
 namespace {
 
 std::string repeated(const std::string& text, int count) {
@@ -143,4 +143,4 @@ TEST(Size, OneMebibyteAndNotAByteMore) {
 }
 
 }  // namespace
-}  // namespace mica::host::test
+}  // namespace mica::host::test::robustness_test

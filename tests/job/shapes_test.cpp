@@ -1,7 +1,7 @@
 // Placement, parts, coats and lights of a job: what they are read as, and what is refused.
 #include "tests/job/job_text.h"
 
-namespace mica::host::test {
+namespace mica::host::test::shapes_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -65,4 +65,4 @@ TEST_F(ShapesOfAJob, MaterialsMayHaveACoat) {
 }
 
 }  // namespace
-}  // namespace mica::host::test
+}  // namespace mica::host::test::shapes_test

@@ -3,7 +3,7 @@
 #include "host/surface/surface.h"
 #include "tests/job/job_text.h"
 
-namespace mica::host::test {
+namespace mica::host::test::values_test {
 namespace {
 
 const std::string full_job = R"(
@@ -391,4 +391,4 @@ INSTANTIATE_TEST_SUITE_P(Data, ShippedJob,
                          testing::Values("shell.toml", "paint.toml", "first.toml", "studio.toml"));
 
 }  // namespace
-}  // namespace mica::host::test
+}  // namespace mica::host::test::values_test

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace mica::host::bench {
+namespace mica::host::bench::image_difference_test {
 namespace {
 
 struct Pair {
@@ -85,4 +85,4 @@ TEST(DisplayDifference, SeesWhatIsDisplayed) {
 }
 
 }  // namespace
-}  // namespace mica::host::bench
+}  // namespace mica::host::bench::image_difference_test

@@ -12,7 +12,7 @@
 #include "host/verify/accuracy.h"
 #include "mica/error.h"
 
-namespace mica::host::bench {
+namespace mica::host::bench::measure_test {
 namespace {
 
 TEST(Errors, AreRelativeToTheReferenceAndItsPeak) {
@@ -56,4 +56,4 @@ TEST(Suites, HaveNames) {
 }
 
 }  // namespace
-}  // namespace mica::host::bench
+}  // namespace mica::host::bench::measure_test

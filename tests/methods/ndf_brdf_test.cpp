@@ -10,7 +10,7 @@
 #include "host/methods/make_evaluator.h"
 #include "host/surface/random.h"
 
-namespace mica::host {
+namespace mica::host::ndf_brdf_test {
 namespace {
 
 class NdfBrdfTest : public testing::TestWithParam<NdfBrdf::Draws> {
@@ -129,4 +129,4 @@ INSTANTIATE_TEST_SUITE_P(Draws, NdfBrdfTest,
                          testing::Values(NdfBrdf::Draws::surface_normals, NdfBrdf::Draws::smooth_lobe));
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::ndf_brdf_test

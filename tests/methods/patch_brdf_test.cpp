@@ -13,7 +13,7 @@
 #include "tests/methods/gaussians/mixture_surfaces.h"
 #include "tests/statistics/chi_square.h"
 
-namespace mica::host {
+namespace mica::host::patch_brdf_test {
 namespace {
 
 using reference::BeckmannMixture;
@@ -263,4 +263,4 @@ TEST(PatchBrdf, RefusesWhatItDoesNotTake) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::patch_brdf_test

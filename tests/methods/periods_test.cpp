@@ -5,7 +5,7 @@
 #include "host/methods/triangles/triangle_evaluator.h"
 #include "host/reference/oracle.h"
 
-namespace mica::host {
+namespace mica::host::periods_test {
 namespace {
 
 Surface small_map() {
@@ -100,4 +100,4 @@ TEST(Periods, LongFootprintsEqualTheOracle) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::periods_test

@@ -9,7 +9,7 @@
 #include "host/device/device.h"
 #include "host/reference/random_numbers.h"
 
-namespace mica::host {
+namespace mica::host::random_numbers_test {
 namespace {
 
 using reference::random_bits;
@@ -131,4 +131,4 @@ TEST(RandomNumbers, ChangeAsAWholeWithEachBitOfTheKey) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::random_numbers_test

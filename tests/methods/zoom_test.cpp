@@ -9,7 +9,7 @@
 #include "host/verify/accuracy.h"
 #include "tests/methods/bilinear_samples.h"
 
-namespace mica::host {
+namespace mica::host::zoom_test {
 namespace {
 
 Device& device() {
@@ -68,4 +68,4 @@ TEST(Zoom, DoesNotShowWhereTheLevelChanges) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::zoom_test

@@ -7,7 +7,7 @@
 
 #include "host/surface/surface.h"
 
-namespace mica::host::reference {
+namespace mica::host::reference::beckmann_mixture_test {
 namespace {
 
 Eigen::Vector3d direction(double polar, double azimuth) {
@@ -71,4 +71,4 @@ TEST(BeckmannMixture, LobesOfASmoothSlopeHaveItsKernelsVariance) {
 }
 
 }  // namespace
-}  // namespace mica::host::reference
+}  // namespace mica::host::reference::beckmann_mixture_test

@@ -10,7 +10,7 @@
 #include "host/surface/random.h"
 #include "mica/error.h"
 
-namespace mica::host::reference {
+namespace mica::host::reference::binning_test {
 namespace {
 
 Surface random_surface(Interpolation interpolation) {
@@ -150,4 +150,4 @@ TEST(BinningCounts, BadSettingsAreRefused) {
 }
 
 }  // namespace
-}  // namespace mica::host::reference
+}  // namespace mica::host::reference::binning_test

@@ -6,7 +6,7 @@
 
 #include "host/reference/cavity.h"
 
-namespace mica::host::reference {
+namespace mica::host::reference::cavity_test {
 namespace {
 
 constexpr double kDegree = M_PI / 180;
@@ -110,4 +110,4 @@ TEST(Cavity, TendsToTheMirrorsEnergy) {
 }
 
 }  // namespace
-}  // namespace mica::host::reference
+}  // namespace mica::host::reference::cavity_test

@@ -9,7 +9,7 @@
 
 #include "tests/reference/fifty_digits.h"
 
-namespace mica::host::reference {
+namespace mica::host::reference::gaussian_triangle_test {
 namespace {
 
 constexpr double tolerance = 1e-10;
@@ -140,4 +140,4 @@ TEST(NearestSquared, OfConvexPolygons) {
 }
 
 }  // namespace
-}  // namespace mica::host::reference
+}  // namespace mica::host::reference::gaussian_triangle_test

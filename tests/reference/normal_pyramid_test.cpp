@@ -6,7 +6,7 @@
 
 #include "host/surface/interpolate.h"
 
-namespace mica::host::reference {
+namespace mica::host::reference::normal_pyramid_test {
 namespace {
 
 /// Steep steps, so that Catmull-Rom overshoots; sizes that are no multiples of a block.
@@ -55,4 +55,4 @@ INSTANTIATE_TEST_SUITE_P(All, NormalPyramidOf,
                                          Interpolation::bicubic));
 
 }  // namespace
-}  // namespace mica::host::reference
+}  // namespace mica::host::reference::normal_pyramid_test

@@ -15,7 +15,7 @@
 #include "host/surface/random.h"
 #include "tests/reference/fifty_digits.h"
 
-namespace mica::host::reference {
+namespace mica::host::reference::oracle_fifty_digits_test {
 namespace {
 
 using Number = FiftyDigits::Number;
@@ -171,4 +171,4 @@ TEST(OracleFiftyDigits, AgreesToTwelve) {
 }
 
 }  // namespace
-}  // namespace mica::host::reference
+}  // namespace mica::host::reference::oracle_fifty_digits_test

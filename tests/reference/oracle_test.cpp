@@ -4,18 +4,18 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
 
+#include "host/base/symmetric_matrix.h"
 #include "host/reference/gaussian_triangle.h"
 #include "host/surface/interpolate.h"
 #include "host/surface/random.h"
 #include "mica/error.h"
 #include "tests/reference/fifty_digits.h"
 
-namespace mica::host::reference {
+namespace mica::host::reference::oracle_test {
 namespace {
 
 double random_number(int stream, std::uint64_t index) {
@@ -109,7 +109,7 @@ TEST(Oracle, RampIsAConvolutionOfGaussians) {
             Query query = texel_query(surface, mean, 2.5, 2.5 / aspect, 0.6, {0, 0}, roughness);
             const Eigen::Matrix2d cov = jacobian * cov_texels(surface, query) * jacobian.transpose() +
                                         roughness * roughness * Eigen::Matrix2d::Identity();
-            query.half_vector = mean_normal + cov.llt().matrixL() * step;
+            query.half_vector = mean_normal + cholesky_factor(cov) * step;
             // The closed form in doubles loses digits with the square of |J sigma| / roughness.
             const double lost = 1e-15 * std::pow(0.03 / roughness, 2);
             EXPECT_NEAR(oracle.evaluate(query).density / gaussian(query.half_vector - mean_normal, cov), 1,
@@ -349,4 +349,4 @@ TEST(Oracle, RefusesWhatHasNoAnswer) {
 }
 
 }  // namespace
-}  // namespace mica::host::reference
+}  // namespace mica::host::reference::oracle_test

@@ -12,7 +12,7 @@
 
 // A baseline is honest only if it computes what it claims to: the paper's algorithm is held to the oracle
 // here, to the accuracy that the paper's erf allows.
-namespace mica::host::bench {
+namespace mica::host::bench::paper_recursion_test {
 namespace {
 
 /// Integral of exp(-Q/2) over the unit right triangle by midpoints of a fine lattice.
@@ -104,4 +104,4 @@ TEST(PaperRecursion, RefusesOtherSurfaces) {
 }
 
 }  // namespace
-}  // namespace mica::host::bench
+}  // namespace mica::host::bench::paper_recursion_test

@@ -6,7 +6,7 @@
 
 #include "host/reference/triangle_batch.h"
 
-namespace mica::host::reference {
+namespace mica::host::reference::triangle_rule_test {
 namespace {
 
 double factorial(int n) {
@@ -89,4 +89,4 @@ TEST(TriangleRules, KeepTheirTolerance) {
 }
 
 }  // namespace
-}  // namespace mica::host::reference
+}  // namespace mica::host::reference::triangle_rule_test

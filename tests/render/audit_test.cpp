@@ -7,7 +7,7 @@
 
 #include "host/reference/oracle.h"
 
-namespace mica::host {
+namespace mica::host::audit_test {
 namespace {
 
 Query query_at(double u) {
@@ -65,4 +65,4 @@ TEST(Audit, MeasuresAnErrorThatWasPutIn) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::audit_test

@@ -9,7 +9,7 @@
 #include "mica/error.h"
 #include "tests/temporary_path.h"
 
-namespace mica::host {
+namespace mica::host::error_channel_test {
 namespace {
 
 std::string plane_job() {
@@ -90,4 +90,4 @@ TEST(ErrorChannel, IsRefusedWhereNothingIsKnownOfTheError) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::error_channel_test

@@ -13,7 +13,7 @@
 #include "host/render/render.h"
 #include "tests/temporary_path.h"
 
-namespace mica::host {
+namespace mica::host::gather_light_test {
 namespace {
 
 /// A plane, seen from a few degrees or, with a narrow `fov`, all alike.
@@ -309,4 +309,4 @@ intensity = [4, 4, 4]
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::gather_light_test

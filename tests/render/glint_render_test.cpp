@@ -11,7 +11,7 @@
 #include "mica/error.h"
 #include "tests/temporary_path.h"
 
-namespace mica::host {
+namespace mica::host::glint_render_test {
 namespace {
 
 const char* const kSun = "type = \"directional\"\ndirection = [0.3, 1.0, -0.8]";
@@ -149,4 +149,4 @@ TEST(GlintRender, PlansNothingButAKernel) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::glint_render_test

@@ -16,7 +16,7 @@
 #include "host/render/render.h"
 #include "host/surface/map_size.h"
 
-namespace mica::host {
+namespace mica::host::plan_test {
 namespace {
 
 std::vector<std::string> shipped_jobs() {
@@ -137,4 +137,4 @@ INSTANTIATE_TEST_SUITE_P(All, ShippedJob, testing::ValuesIn(shipped_jobs()),
                          [](const auto& info) { return std::filesystem::path(info.param).stem().string(); });
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::plan_test

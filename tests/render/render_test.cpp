@@ -10,7 +10,7 @@
 #include "host/job/job.h"
 #include "tests/temporary_path.h"
 
-namespace mica::host {
+namespace mica::host::render_test {
 namespace {
 
 /// A small picture of a sphere of polished metal, with every AOV.
@@ -141,4 +141,4 @@ TEST(Render, GlintsAreCoherentInTime) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::render_test

@@ -9,7 +9,7 @@
 #include "host/report/chart.h"
 #include "host/report/page_images.h"
 
-namespace mica::host {
+namespace mica::host::page_test {
 namespace {
 
 std::size_t count_of(const std::string& text, const std::string& word) {
@@ -112,4 +112,4 @@ TEST(BenchPage, StandsByItself) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::page_test

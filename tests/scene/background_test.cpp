@@ -7,7 +7,7 @@
 #include "host/scene/background.h"
 #include "tests/image/folder.h"
 
-namespace mica::host {
+namespace mica::host::background_test {
 namespace {
 
 using BackgroundTest = FolderTest;
@@ -53,4 +53,4 @@ TEST_F(BackgroundTest, UnusableImagesAreRefused) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::background_test

@@ -15,7 +15,7 @@
 #include "host/scene/spoon.h"
 #include "mica/error.h"
 
-namespace mica::host {
+namespace mica::host::bodies_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -151,4 +151,4 @@ TEST(Bodies, RefuseWhatMakesNoSense) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::bodies_test

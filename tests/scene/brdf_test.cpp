@@ -9,7 +9,7 @@
 #include "host/scene/fresnel.h"
 #include "host/scene/shading.h"
 
-namespace mica::host {
+namespace mica::host::brdf_test {
 namespace {
 
 TEST(DielectricReflectance, HasItsClosedForms) {
@@ -119,4 +119,4 @@ TEST(GlintWeight, IsTheMicrofacetModelWithoutItsNdf) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::brdf_test

@@ -5,7 +5,7 @@
 
 #include "host/scene/coat_crossing.h"
 
-namespace mica::host {
+namespace mica::host::coat_crossing_test {
 namespace {
 
 Eigen::Vector3d direction(double z, double azimuth) {
@@ -48,4 +48,4 @@ TEST(CoatCrossing, WithoutACoatNothingChanges) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::coat_crossing_test

@@ -9,7 +9,7 @@
 #include "host/scene/fresnel.h"
 #include "host/scene/lobes.h"
 
-namespace mica::host {
+namespace mica::host::coat_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -114,4 +114,4 @@ TEST(Coat, QueriesLieBelowTheInterface) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::coat_test

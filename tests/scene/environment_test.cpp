@@ -11,7 +11,7 @@
 #include "host/scene/piecewise_constant.h"
 #include "tests/image/folder.h"
 
-namespace mica::host {
+namespace mica::host::environment_test {
 namespace {
 
 class EnvironmentTest : public FolderTest {
@@ -160,4 +160,4 @@ TEST_F(EnvironmentTest, UnusableImagesAreRefused) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::environment_test

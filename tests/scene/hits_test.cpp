@@ -10,7 +10,7 @@
 #include "host/scene/geometry.h"
 #include "mica/error.h"
 
-namespace mica::host {
+namespace mica::host::hits_test {
 namespace {
 
 using Eigen::Vector2d;
@@ -199,4 +199,4 @@ TEST(Geometry, RefusesShapesWithoutExtent) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::hits_test

@@ -2,7 +2,7 @@
 
 #include "host/scene/keyframes.h"
 
-namespace mica::host {
+namespace mica::host::keyframes_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -45,4 +45,4 @@ TEST(Keyframes, StandStillBeforeAndAfter) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::keyframes_test

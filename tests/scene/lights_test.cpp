@@ -9,7 +9,7 @@
 #include "host/scene/scene.h"
 #include "host/scene/shading.h"
 
-namespace mica::host {
+namespace mica::host::lights_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -113,4 +113,4 @@ TEST(AreaLights, PenumbraIsHalfLitInItsMiddle) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::lights_test

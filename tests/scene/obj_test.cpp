@@ -9,7 +9,7 @@
 #include "host/scene/obj.h"
 #include "tests/image/folder.h"
 
-namespace mica::host {
+namespace mica::host::obj_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -158,4 +158,4 @@ TEST_F(Obj, FilesWithoutFacesAreRefused) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::obj_test

@@ -8,7 +8,7 @@
 #include "host/scene/geometry.h"
 #include "mica/error.h"
 
-namespace mica::host {
+namespace mica::host::placement_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -120,4 +120,4 @@ TEST(Placement, RefusesWhatMakesNoSense) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::placement_test

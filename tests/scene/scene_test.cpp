@@ -1,20 +1,20 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <cmath>
 #include <cstring>
 #include <functional>
 
 #include "host/base/constants.h"
+#include "host/base/symmetric_matrix.h"
 #include "host/microfacet/masking.h"
 #include "host/scene/camera.h"
 #include "host/scene/fresnel.h"
 #include "host/scene/scene.h"
 #include "mica/error.h"
 
-namespace mica::host {
+namespace mica::host::scene_test {
 namespace {
 
 using Eigen::Vector2d;
@@ -279,9 +279,9 @@ TEST(Scene, EveryNumberIsInRange) {
     ASSERT_TRUE(footprint.mean_uv.minCoeff() >= 0 && footprint.mean_uv.maxCoeff() < 1);
     ASSERT_LT(query.query.half_vector.norm(), 1);
     ASSERT_TRUE(query.weight.allFinite() && query.weight.minCoeff() >= 0);
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(footprint.cov_uv);
-    ASSERT_GT(axes.eigenvalues()[0], 0);
-    ASSERT_LT(axes.eigenvalues()[1] / axes.eigenvalues()[0], 1.001e4);
+    const PrincipalAxes axes = principal_axes(footprint.cov_uv);
+    ASSERT_GT(axes.eigenvalues[0], 0);
+    ASSERT_LT(axes.eigenvalues[1] / axes.eigenvalues[0], 1.001e4);
   }
   for (std::size_t pixel = 0; pixel < rows.uv.size(); ++pixel) {
     ASSERT_TRUE(rows.uv[pixel].minCoeff() >= 0 && rows.uv[pixel].maxCoeff() < 1);
@@ -339,4 +339,4 @@ TEST(Scene, RefusesWhatMakesNoSense) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::scene_test

@@ -8,7 +8,7 @@
 #include "host/scene/shading.h"
 #include "tests/image/folder.h"
 
-namespace mica::host {
+namespace mica::host::shading_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -126,4 +126,4 @@ TEST_F(InterpolatedNormals, KeepLightBelowTheirHorizonOut) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::shading_test

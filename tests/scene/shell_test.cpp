@@ -10,7 +10,7 @@
 
 #include "host/scene/shell.h"
 
-namespace mica::host {
+namespace mica::host::shell_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -134,4 +134,4 @@ TEST_F(Shell, IsTheSameEveryTime) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::shell_test

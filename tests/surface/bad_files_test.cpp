@@ -3,7 +3,7 @@
 #include "host/surface/map_pixels.h"
 #include "tests/surface/map_images.h"
 
-namespace mica::host::test {
+namespace mica::host::test::bad_files_test {
 namespace {
 
 /// Files that are no maps: each must be a FileError that begins with the path and says why.
@@ -170,4 +170,4 @@ TEST_F(BadFiles, DamagedExrHeader) {
 }
 
 }  // namespace
-}  // namespace mica::host::test
+}  // namespace mica::host::test::bad_files_test

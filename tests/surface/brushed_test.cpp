@@ -1,7 +1,7 @@
 #include "mica/error.h"
 #include "tests/surface/map_statistics.h"
 
-namespace mica::host {
+namespace mica::host::brushed_test {
 namespace {
 
 BrushedSurface brushed(int resolution, double along, double across, double degrees = 0) {
@@ -78,4 +78,4 @@ TEST(Brushed, RefusesSettingsOutOfRangeAndWarns) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::brushed_test

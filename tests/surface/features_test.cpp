@@ -3,7 +3,7 @@
 #include "mica/error.h"
 #include "tests/surface/map_statistics.h"
 
-namespace mica::host {
+namespace mica::host::features_test {
 namespace {
 
 template <typename Description>
@@ -249,4 +249,4 @@ TEST(Features, RefuseSettingsOutOfRange) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::features_test

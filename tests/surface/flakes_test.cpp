@@ -11,7 +11,7 @@
 #include "host/surface/synthesis.h"
 #include "mica/error.h"
 
-namespace mica::host {
+namespace mica::host::flakes_test {
 namespace {
 
 FlakesSurface flakes(int resolution, double flake_size_texels, double alpha, std::uint64_t seed = 1) {
@@ -188,4 +188,4 @@ TEST(Flakes, RefuseSettingsOutOfRange) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::flakes_test

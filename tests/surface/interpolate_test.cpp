@@ -6,7 +6,7 @@
 
 #include "host/surface/random.h"
 
-namespace mica::host {
+namespace mica::host::interpolate_test {
 namespace {
 
 using Function = Eigen::Vector2d (*)(double x, double y);
@@ -148,4 +148,4 @@ TEST(Interpolate, CatmullRomWeightsFollowTheHermiteForm) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::interpolate_test

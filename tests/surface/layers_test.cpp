@@ -2,7 +2,7 @@
 #include "mica/error.h"
 #include "tests/surface/map_statistics.h"
 
-namespace mica::host {
+namespace mica::host::layers_test {
 namespace {
 
 SurfaceDescription brushed(int resolution) {
@@ -50,4 +50,4 @@ TEST(Layers, DoNotDependOnTheNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::layers_test

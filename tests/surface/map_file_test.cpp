@@ -8,7 +8,7 @@
 #include "host/surface/synthesis.h"
 #include "tests/surface/map_images.h"
 
-namespace mica::host::test {
+namespace mica::host::test::map_file_test {
 namespace {
 
 const float kNan = std::numeric_limits<float>::quiet_NaN();
@@ -332,4 +332,4 @@ TEST_F(MapFileTest, DataWindowIsThePeriod) {
 }
 
 }  // namespace
-}  // namespace mica::host::test
+}  // namespace mica::host::test::map_file_test

@@ -9,7 +9,7 @@
 #include "host/surface/synthesis.h"
 #include "mica/error.h"
 
-namespace mica::host {
+namespace mica::host::spectrum_test {
 namespace {
 
 using Slopes = std::vector<Eigen::Vector2d>;
@@ -196,4 +196,4 @@ TEST(Spectrum, WarnsOfCorrelationsThatTheGridBends) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::spectrum_test

@@ -10,7 +10,7 @@
 #include "host/surface/random.h"
 #include "mica/error.h"
 
-namespace mica::host {
+namespace mica::host::surface_test {
 namespace {
 
 using Normals = std::vector<Eigen::Vector2d>;
@@ -74,4 +74,4 @@ TEST(Random, IsUniformAndUncorrelated) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::surface_test

@@ -4,7 +4,7 @@
 #include "mica/error.h"
 #include "tests/surface/map_statistics.h"
 
-namespace mica::host {
+namespace mica::host::waves_test {
 namespace {
 
 WavesSurface waves(int resolution = 128, double patch_meters = 200, double time_seconds = 0) {
@@ -160,4 +160,4 @@ TEST(Waves, WarnOfSmallPatchesAndRefuseSettingsOutOfRange) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::waves_test

@@ -7,7 +7,7 @@
 #include "host/methods/map/map_query.h"
 #include "tests/app/command.h"
 
-namespace mica::host::app {
+namespace mica::host::app::query_table_test {
 namespace {
 
 class QueryTables : public FolderTest {
@@ -156,4 +156,4 @@ TEST_F(QueryTables, ReadLargeArraysInEitherOrder) {
 }
 
 }  // namespace
-}  // namespace mica::host::app
+}  // namespace mica::host::app::query_table_test

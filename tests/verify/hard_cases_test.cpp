@@ -10,7 +10,7 @@
 #include "host/verify/judge.h"
 #include "host/verify/run_hard_case.h"
 
-namespace mica::host {
+namespace mica::host::hard_cases_test {
 namespace {
 
 Device& device() {
@@ -122,4 +122,4 @@ TEST(HardCasesFindOut, WhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::hard_cases_test

@@ -11,7 +11,7 @@
 #include "host/reference/beckmann_mixture.h"
 #include "host/reference/gaussian_mixture.h"
 
-namespace mica::host {
+namespace mica::host::mixture_waves_test {
 namespace {
 
 constexpr int kResolution = 64;
@@ -108,4 +108,4 @@ INSTANTIATE_TEST_SUITE_P(Variants, MixtureWaves,
                          name_of);
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::mixture_waves_test

@@ -10,7 +10,7 @@
 #include "host/reference/oracle.h"
 #include "host/verify/accuracy.h"
 
-namespace mica::host {
+namespace mica::host::pyramid_waves_test {
 namespace {
 
 constexpr int kResolution = 32;
@@ -71,4 +71,4 @@ INSTANTIATE_TEST_SUITE_P(Variants, PyramidWaves,
                          name_of);
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::pyramid_waves_test

@@ -11,7 +11,7 @@
 #include "host/methods/triangles/triangle_evaluator.h"
 #include "host/reference/oracle.h"
 
-namespace mica::host {
+namespace mica::host::waves_test {
 namespace {
 
 constexpr int resolution = 64;
@@ -73,4 +73,4 @@ INSTANTIATE_TEST_SUITE_P(Variants, Waves,
                          name_of);
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::waves_test

@@ -15,7 +15,7 @@
 #include "mica/error.h"
 #include "tests/methods/bilinear_samples.h"
 
-namespace mica::host {
+namespace mica::host::auto_test {
 namespace {
 
 Device& device() {
@@ -234,4 +234,4 @@ TEST(Auto, SamplesEveryClass) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::auto_test

@@ -8,7 +8,7 @@
 
 #include "host/surface/random.h"
 
-namespace mica::host {
+namespace mica::host::sampled_error_test {
 namespace {
 
 TEST(SampledError, IsTheRelativeL2) {
@@ -53,4 +53,4 @@ TEST(SampledError, BoundsHoldWhereFewQueriesMakeMostOfTheError) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::sampled_error_test

@@ -8,7 +8,7 @@
 
 #include "host/surface/random.h"
 
-namespace mica::host {
+namespace mica::host::normal_map_brdf_test {
 namespace {
 
 /// One normal everywhere, tilted by `angle` from +z towards +x.
@@ -84,4 +84,4 @@ TEST(NormalMapBrdf, DrawsFindTheSameAlbedoAsAQuadrature) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::normal_map_brdf_test

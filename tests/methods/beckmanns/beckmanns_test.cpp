@@ -16,7 +16,7 @@
 #include "tests/methods/gaussians/mixture_culling.h"
 #include "tests/methods/gaussians/mixture_surfaces.h"
 
-namespace mica::host {
+namespace mica::host::beckmanns_test {
 namespace {
 
 Device& device() {
@@ -153,4 +153,4 @@ TEST(Beckmanns, RefuseWhatTheyDoNotTake) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::beckmanns_test

@@ -9,7 +9,7 @@
 #include "mica/error.h"
 #include "tests/methods/cavities/cavity_cases.h"
 
-namespace mica::host {
+namespace mica::host::cavities_test {
 namespace {
 
 using namespace cavity_cases;
@@ -283,4 +283,4 @@ TEST(Cavities, RefuseWhatTheyDoNotTake) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::cavities_test

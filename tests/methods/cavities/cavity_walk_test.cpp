@@ -11,7 +11,7 @@
 #include "tests/methods/cavities/cavity_cases.h"
 #include "tests/statistics/chi_square.h"
 
-namespace mica::host {
+namespace mica::host::cavity_walk_test {
 namespace {
 
 using namespace cavity_cases;
@@ -224,4 +224,4 @@ TEST(CavityDraws, HaveWeightsOfOne) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::cavity_walk_test

@@ -6,7 +6,7 @@
 
 #include "host/methods/cavities/energy_table.h"
 
-namespace mica::host {
+namespace mica::host::energy_table_test {
 namespace {
 
 /// [Che19] Eq. 8 of a cavity of slopes (x, y), x towards the view, by the paper's own formulas.
@@ -72,4 +72,4 @@ TEST(EnergyTable, HasItsLimits) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::energy_table_test

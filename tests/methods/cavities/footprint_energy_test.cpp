@@ -8,7 +8,7 @@
 #include "host/methods/cavities/footprint_energy.h"
 #include "host/surface/disk.h"
 
-namespace mica::host {
+namespace mica::host::footprint_energy_test {
 namespace {
 
 Surface bumps() {
@@ -82,4 +82,4 @@ TEST(FootprintEnergy, LosesNoMoreThanTheTexels) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::footprint_energy_test

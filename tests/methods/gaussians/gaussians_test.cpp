@@ -16,7 +16,7 @@
 #include "tests/methods/gaussians/mixture_culling.h"
 #include "tests/methods/gaussians/mixture_surfaces.h"
 
-namespace mica::host {
+namespace mica::host::gaussians_test {
 namespace {
 
 Device& device() {
@@ -147,4 +147,4 @@ TEST(Gaussians, RefuseWhatTheyDoNotTake) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::gaussians_test

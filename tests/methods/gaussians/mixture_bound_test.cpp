@@ -9,7 +9,7 @@
 #include "host/surface/random.h"
 #include "kernels/types.h"
 
-namespace mica::host {
+namespace mica::host::mixture_bound_test {
 namespace {
 
 using device_types::MICA_MIXTURE_NODE_STRIDE;
@@ -91,4 +91,4 @@ TEST(MixtureBound, OfNoElementsIsEmpty) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::mixture_bound_test

@@ -8,7 +8,7 @@
 #include "host/reference/glint_grid.h"
 #include "host/surface/random.h"
 
-namespace mica::host {
+namespace mica::host::glint_process_test {
 namespace {
 
 /// Queries with footprints of 0.03 to 30 cells of density 1e6, and a point of its own each.
@@ -110,4 +110,4 @@ INSTANTIATE_TEST_SUITE_P(Distributions, GlintProcess,
                          testing::Values(Distribution::beckmann, Distribution::trowbridge_reitz), name_of);
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::glint_process_test

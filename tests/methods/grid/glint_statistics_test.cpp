@@ -7,7 +7,7 @@
 
 #include "host/reference/glint_grid.h"
 
-namespace mica::host::reference {
+namespace mica::host::reference::glint_statistics_test {
 namespace {
 
 constexpr int kBins = 16, kTests = 200;  // tests: at least as many as are made below
@@ -84,4 +84,4 @@ TEST(GlintStatistics, WouldSeeACorrelation) {
 }
 
 }  // namespace
-}  // namespace mica::host::reference
+}  // namespace mica::host::reference::glint_statistics_test

@@ -11,7 +11,7 @@
 #include "host/reference/glint_draws.h"
 #include "host/surface/random.h"
 
-namespace mica::host {
+namespace mica::host::grid_brdf_test {
 namespace {
 
 class Random {
@@ -344,4 +344,4 @@ INSTANTIATE_TEST_SUITE_P(Distributions, GridBrdfTest,
                          testing::Values(Distribution::beckmann, Distribution::trowbridge_reitz), name_of);
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::grid_brdf_test

@@ -14,7 +14,7 @@
 #include "host/surface/random.h"
 #include "mica/error.h"
 
-namespace mica::host {
+namespace mica::host::grid_test {
 namespace {
 
 reference::GlintProcess process_of(const GlintGrid& grid) {
@@ -326,4 +326,4 @@ INSTANTIATE_TEST_SUITE_P(Distributions, Grid,
                          testing::Values(Distribution::beckmann, Distribution::trowbridge_reitz), name_of);
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::grid_test

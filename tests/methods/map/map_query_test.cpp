@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-namespace mica::host {
+namespace mica::host::map_query_test {
 namespace {
 
 Footprint footprint(double sigma_major, double sigma_minor, double angle, int width, int height) {
@@ -97,4 +97,4 @@ TEST(QueryProblem, NamesWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::map_query_test

@@ -6,7 +6,7 @@
 
 #include "host/surface/interpolate.h"
 
-namespace mica::host {
+namespace mica::host::map_structure_test {
 namespace {
 
 using namespace device_types;
@@ -115,4 +115,4 @@ TEST(MapStructure, TakesFortyMebibytesAtMostForA2048Map) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::map_structure_test

@@ -10,7 +10,7 @@
 #include "host/methods/pyramid/cell_moments.h"
 #include "host/methods/pyramid/element_tree.h"
 
-namespace mica::host {
+namespace mica::host::moment_pyramid_test {
 namespace {
 
 using namespace device_types;
@@ -203,4 +203,4 @@ TEST(MomentPyramid, TakesTheFinestLevelsThatFit) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::moment_pyramid_test

@@ -8,7 +8,7 @@
 #include "host/verify/accuracy.h"
 #include "tests/methods/bilinear_samples.h"
 
-namespace mica::host {
+namespace mica::host::pyramid_images_test {
 namespace {
 
 using Way = PyramidPainter::Way;
@@ -114,4 +114,4 @@ TEST(PyramidImages, OfAWindowAreThoseOfTheDisk) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::pyramid_images_test

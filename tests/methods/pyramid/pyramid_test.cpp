@@ -12,7 +12,7 @@
 #include "host/verify/accuracy.h"
 #include "tests/methods/bilinear_samples.h"
 
-namespace mica::host {
+namespace mica::host::pyramid_test {
 namespace {
 
 Device& device() {
@@ -218,4 +218,4 @@ TEST(Pyramid, SendsSmallFootprintsAndRoughnessesToTheTexels) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::pyramid_test

@@ -9,7 +9,7 @@
 #include "host/reference/beckmann_mixture.h"
 #include "tests/methods/gaussians/mixture_surfaces.h"
 
-namespace mica::host {
+namespace mica::host::smooth_test {
 namespace {
 
 Device& device() {
@@ -93,4 +93,4 @@ TEST(Smooth, SeesTheWholeMap) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::smooth_test

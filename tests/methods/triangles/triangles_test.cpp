@@ -13,7 +13,7 @@
 #include "host/surface/random.h"
 #include "host/verify/accuracy.h"
 
-namespace mica::host {
+namespace mica::host::triangles_test {
 namespace {
 
 constexpr double kOracleTolerance = 1e-7;  // a thousandth of what is tested
@@ -279,4 +279,4 @@ TEST(Triangles, TakeAnEmptyBatch) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::triangles_test

@@ -8,7 +8,7 @@
 #include "host/verify/arithmetic.h"
 #include "host/verify/run_hard_case.h"
 
-namespace mica::host {
+namespace mica::host::app {
 
 void print_arithmetic(const std::vector<FunctionError>& errors);
 nlohmann::json arithmetic_json(const std::vector<FunctionError>& errors);
@@ -19,4 +19,4 @@ std::vector<HardResult> print_hard_cases(Device* device, std::uint64_t evaluatio
                                          const MethodRegistry& methods);
 nlohmann::json hard_cases_json(const std::vector<HardResult>& results);
 
-}  // namespace mica::host
+}  // namespace mica::host::app

@@ -1,4 +1,4 @@
-#include "host/verify/selftest_tables.h"
+#include "host/app/selftest_tables.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include "host/base/interrupt.h"
 #include "host/verify/hard_directions.h"
 
-namespace mica::host {
+namespace mica::host::app {
 namespace {
 
 std::string ulp_text(double ulp) {
@@ -119,4 +119,4 @@ nlohmann::json hard_cases_json(const std::vector<HardResult>& results) {
   return list;
 }
 
-}  // namespace mica::host
+}  // namespace mica::host::app
