@@ -12,7 +12,7 @@
 #include "host/base/stopwatch.h"
 #include "host/measure/coherent.h"
 #include "host/methods/cavities/cavity_brdf.h"
-#include "host/methods/make_patch_brdf.h"
+#include "host/methods/registry.h"
 #include "mica/error.h"
 
 namespace mica::host::bench {
@@ -39,9 +39,8 @@ struct Contender {
 
 std::vector<Contender> make_contenders(Device& device, const Surface& surface) {
   std::vector<Contender> contenders;
-  PatchBrdfSettings beckmanns;
-  beckmanns.masking = Masking::filtered;
-  contenders.push_back({"beckmanns, filtered", make_patch_brdf("beckmanns", device, surface, beckmanns)});
+  contenders.push_back(
+      {"beckmanns, filtered", make_patch_brdf("beckmanns", device, surface, {{"masking", "filtered"}})});
   for (const LostEnergy energy : {LostEnergy::table, LostEnergy::exact}) {
     for (const int per_texel : {1, 2}) {
       CavitySettings settings;

@@ -17,7 +17,7 @@
 #include "host/methods/auto/auto_evaluator.h"
 #include "host/methods/auto/sampled_error.h"
 #include "host/methods/gaussians/mixture_evaluator.h"
-#include "host/methods/make_evaluator.h"
+#include "host/methods/registry.h"
 #include "host/methods/pyramid/pyramid_evaluator.h"
 #include "host/methods/triangles/triangle_evaluator.h"
 #include "host/verify/accuracy.h"
@@ -139,7 +139,7 @@ Bench::Bench(Device& device, const std::string& name, double roughness, const Ef
              watch.seconds() - seconds);
   for (const int elements : {1, 2, 4})
     mixtures_.push_back(
-        {fmt::format("gaussians {}", elements), make_evaluator("gaussians", device, surface_, elements)});
+        {fmt::format("gaussians {}", elements), make_evaluator("gaussians", device, surface_, {{"elements", std::to_string(elements)}})});
 }
 
 void Bench::run() {

@@ -11,7 +11,7 @@
 #include "host/base/stopwatch.h"
 #include "host/image/image.h"
 #include "host/measure/point_samples.h"
-#include "host/methods/make_evaluator.h"
+#include "host/methods/registry.h"
 #include "host/render/film.h"
 #include "host/scene/scene.h"
 #include "mica/error.h"

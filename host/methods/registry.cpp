@@ -72,16 +72,16 @@ std::unique_ptr<MethodSettings> settings_of(const Method& method, const SettingT
 
 }  // namespace
 
-std::unique_ptr<Evaluator> make_evaluator(const MethodRegistry& methods, const std::string& name,
-                                          Device& device, const Surface& surface,
+std::unique_ptr<Evaluator> make_evaluator(const std::string& name, Device& device, const Surface& surface,
                                           const SettingTexts& settings) {
+  const MethodRegistry methods = MethodRegistry::builtin();
   const Method& method = methods.get(name);
   return method.make(&device, &surface, *settings_of(method, settings));
 }
 
-std::unique_ptr<PatchBrdf> make_patch_brdf(const MethodRegistry& methods, const std::string& name,
-                                           Device& device, const Surface& surface,
+std::unique_ptr<PatchBrdf> make_patch_brdf(const std::string& name, Device& device, const Surface& surface,
                                            const SettingTexts& settings) {
+  const MethodRegistry methods = MethodRegistry::builtin();
   const Method& method = methods.get(name);
   return method.make_brdf(&device, &surface, *settings_of(method, settings));
 }

@@ -33,12 +33,10 @@ class MethodRegistry {
   std::vector<std::shared_ptr<const Method>> methods_;
 };
 
-/// What calls make by name, with the settings that are given.
-std::unique_ptr<Evaluator> make_evaluator(const MethodRegistry& methods, const std::string& name,
-                                          Device& device, const Surface& surface,
+/// What calls make by name, with the settings that are given; of the library's own methods.
+std::unique_ptr<Evaluator> make_evaluator(const std::string& name, Device& device, const Surface& surface,
                                           const SettingTexts& settings = {});
-std::unique_ptr<PatchBrdf> make_patch_brdf(const MethodRegistry& methods, const std::string& name,
-                                           Device& device, const Surface& surface,
+std::unique_ptr<PatchBrdf> make_patch_brdf(const std::string& name, Device& device, const Surface& surface,
                                            const SettingTexts& settings = {});
 
 }  // namespace mica::host

@@ -17,14 +17,10 @@ TEST(CavitiesInAJob, HaveTheirKeys) {
   const JobFolder folder;
   const MaterialDescription plain = folder.load(with("")).scene.materials[0];
   EXPECT_EQ(plain.ndf, "cavities");
-  EXPECT_EQ(plain.compensation, Compensation::diffuse);
-  EXPECT_EQ(plain.energy, LostEnergy::exact);
-  EXPECT_EQ(plain.elements, 1);
+  EXPECT_EQ(describe(*plain.settings), "compensation diffuse, energy exact, elements 1");
   const MaterialDescription other =
       folder.load(with("compensation = \"specular\"\nenergy = \"table\"\nspacing = 0.5")).scene.materials[0];
-  EXPECT_EQ(other.compensation, Compensation::specular);
-  EXPECT_EQ(other.energy, LostEnergy::table);
-  EXPECT_EQ(other.elements, 2);
+  EXPECT_EQ(describe(*other.settings), "compensation specular, energy table, elements 2");
 }
 
 TEST(CavitiesInAJob, RefuseWhatTheyDoNotTake) {

@@ -7,7 +7,7 @@
 
 #include "host/measure/point_samples.h"
 #include "host/measure/suite.h"
-#include "host/methods/make_evaluator.h"
+#include "host/methods/registry.h"
 #include "host/reference/oracle.h"
 #include "host/verify/accuracy.h"
 #include "mica/error.h"
@@ -25,7 +25,8 @@ TEST(Errors, AreRelativeToTheReferenceAndItsPeak) {
 
 TEST(Contenders, AreAllOfTheRegistry) {
   const std::vector<Contender> all = contenders({1, 2});
-  for (const std::string& name : evaluator_names()) {
+  for (const std::string& name : MethodRegistry::builtin().names(
+           [](const MethodTraits& traits) { return traits.compared && traits.map; })) {
     const auto count =
         std::count_if(all.begin(), all.end(), [&](const Contender& c) { return c.evaluator == name; });
     EXPECT_EQ(count, name == "gaussians" || name == "beckmanns" ? 2 : 1) << name;

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "host/methods/make_evaluator.h"
+#include "host/methods/registry.h"
 #include "host/surface/random.h"
 
 namespace mica::host::ndf_brdf_test {

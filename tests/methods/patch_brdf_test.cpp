@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "host/methods/make_patch_brdf.h"
+#include "host/methods/registry.h"
 #include "host/reference/beckmann_mixture.h"
 #include "host/surface/random.h"
 #include "mica/error.h"
@@ -24,9 +24,8 @@ Device& device() {
 }
 
 std::unique_ptr<PatchBrdf> beckmanns(const Surface& surface, Masking masking) {
-  PatchBrdfSettings settings;
-  settings.masking = masking;
-  return make_patch_brdf("beckmanns", device(), surface, settings);
+  return make_patch_brdf("beckmanns", device(), surface,
+                         {{"masking", masking_names()[static_cast<std::size_t>(masking)]}});
 }
 
 Surface rough(double rms_slope, int resolution = 64, double correlation = 6) {

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <limits>
 
-#include "host/methods/make_evaluator.h"
+#include "host/methods/registry.h"
 #include "host/verify/hard_directions.h"
 #include "host/verify/judge.h"
 #include "host/verify/run_hard_case.h"
@@ -50,7 +50,8 @@ TEST_P(HardCases, AreAnsweredOrRefusedByEveryEvaluator) {
     EXPECT_TRUE(result.outcome == of_triangles || result.evaluator != "triangles") << result.reason;
     maps += result.evaluator != "grid";
   }
-  EXPECT_EQ(maps, evaluator_names().size());
+  const auto on_maps = [](const MethodTraits& traits) { return traits.compared && traits.map; };
+  EXPECT_EQ(maps, MethodRegistry::builtin().names(on_maps).size());
 }
 
 INSTANTIATE_TEST_SUITE_P(All, HardCases, testing::Range(std::size_t{0}, hard_cases().size()),
@@ -110,9 +111,11 @@ TEST(HardCasesFindOut, WhatIsWrong) {
   const Surface surface = hard_case.surface();
   const std::unique_ptr<Evaluator> triangles = make_evaluator("triangles", device(), surface);
   const reference::Oracle oracle(surface, 1e-7);
+  const MethodRegistry methods = MethodRegistry::builtin();
+  const Method& method = methods.get("triangles");
   const auto outcome = [&](float factor) {
     Wrong wrong(triangles.get(), factor);
-    return run_trial(hard_case, surface, &wrong, *make_judge("triangles", surface, oracle), {}).outcome;
+    return run_trial(hard_case, surface, &wrong, *make_judge(method, *method.settings(), surface, oracle), {}).outcome;
   };
   EXPECT_EQ(outcome(1), Outcome::within_bound);
   EXPECT_EQ(outcome(1.001f), Outcome::broken);

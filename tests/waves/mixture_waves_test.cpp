@@ -7,7 +7,7 @@
 
 #include "host/methods/beckmanns/beckmann_evaluator.h"
 #include "host/methods/gaussians/mixture_evaluator.h"
-#include "host/methods/make_patch_brdf.h"
+#include "host/methods/beckmanns/beckmann_brdf.h"
 #include "host/reference/beckmann_mixture.h"
 #include "host/reference/gaussian_mixture.h"
 
@@ -76,10 +76,10 @@ TEST_P(MixtureWaves, PatchesHaveTheirDensityAndAreas) {
   const Eigen::Vector3d view = Eigen::Vector3d(0.5, 0.2, 0.7).normalized();
   for (const auto& [masking, allowed] :
        {std::pair(Masking::exact, 1e-3), std::pair(Masking::filtered, 0.05)}) {
-    PatchBrdfSettings settings;
+    BeckmannBrdfSettings settings;
     settings.masking = masking;
     settings.wave_form = std::get<0>(GetParam());
-    const auto brdf = make_patch_brdf("beckmanns", device_, surface_, settings);
+    const auto brdf = std::make_unique<BeckmannBrdf>(device_, surface_, settings);
     for (const Query& query : queries_) {
       const Eigen::Vector2d& h = query.half_vector;
       const Eigen::Vector3d half(h.x(), h.y(), std::sqrt(1 - h.squaredNorm()));

@@ -8,7 +8,7 @@
 #include <map>
 
 #include "host/methods/auto/sampled_error.h"
-#include "host/methods/make_evaluator.h"
+#include "host/methods/registry.h"
 #include "host/reference/oracle.h"
 #include "host/surface/random.h"
 #include "host/verify/accuracy.h"
@@ -128,7 +128,7 @@ TEST(Auto, LooksAtMoreSamplesWhereFewShowTooMuch) {
   const Surface surface = spectrum();
   std::vector<Query> queries = queries_of_8_texels(surface, 4096);
   const std::vector<float> expected = make_evaluator("triangles", device(), surface)->evaluate(queries),
-                           densities = make_evaluator("gaussians", device(), surface, 1)->evaluate(queries);
+                           densities = make_evaluator("gaussians", device(), surface, {{"elements", "1"}})->evaluate(queries);
   double largest = 0;
   std::ptrdiff_t worst = 0;
   for (std::ptrdiff_t first = 0; first < 4096; first += 256) {
