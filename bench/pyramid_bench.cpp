@@ -20,7 +20,7 @@
 #include "host/methods/make_evaluator.h"
 #include "host/methods/pyramid/pyramid_evaluator.h"
 #include "host/methods/triangles/triangle_evaluator.h"
-#include "host/verify/accuracy.h"
+#include "host/surface/texel_footprint.h"
 #include "mica/error.h"
 
 namespace mica::host::bench {

@@ -10,7 +10,7 @@
 #include "host/image/image.h"
 #include "host/surface/description.h"
 
-namespace mica::host {
+namespace mica::host::words_test {
 namespace {
 
 template <typename Enum>
@@ -47,4 +47,4 @@ TEST(Words, AreThoseOfTheCommandLine) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::words_test

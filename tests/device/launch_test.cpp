@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace mica::host {
+namespace mica::host::launch_test {
 namespace {
 
 void expect_size(const LaunchSize& size, std::size_t global, std::size_t local) {
@@ -38,4 +38,4 @@ TEST(Launch, ReportsWhatItWasDoing) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::launch_test

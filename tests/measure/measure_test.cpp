@@ -9,7 +9,7 @@
 #include "host/measure/suite.h"
 #include "host/methods/make_evaluator.h"
 #include "host/reference/oracle.h"
-#include "host/verify/accuracy.h"
+#include "host/surface/texel_footprint.h"
 #include "mica/error.h"
 
 namespace mica::host::bench::measure_test {
