@@ -72,7 +72,8 @@ void check_draws(Device* device, const GlintsDescription& glints, Check* check) 
     const Eigen::Vector3d half(query.half_vector.x(), query.half_vector.y(), cosine);
     lit.push_back({query.footprint, Eigen::Vector3d::UnitZ(),
                    (2 * cosine * half - Eigen::Vector3d::UnitZ()).normalized(), query.roughness});
-    expected.push_back(reference::glint_draw_density(process, query) / 4);  // of h, then of i: o.h = g.h
+    expected.push_back(reference::glint_draw_density(process, query) /
+                       4);  // the density of h, then that of i: o.h = g.h
   }
   const std::vector<BrdfValue> values = GridBrdf(*device, glints).evaluate(lit);
   for (std::size_t n = 0; n < values.size(); ++n)
