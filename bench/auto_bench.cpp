@@ -42,7 +42,7 @@ double mean(const std::vector<float>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-/// Of an evaluator, what a row of queries took and what its cost model goes by.
+/// What a row of queries took an evaluator, and what its cost model goes by.
 struct CostRow {
   double nanoseconds, blocks, counts;
 };
@@ -101,7 +101,7 @@ void measure(const BenchMap& map, const std::vector<double>& sigmas, Evaluator* 
   }
 }
 
-/// Of every evaluator that `auto` may choose.
+/// Rows of every evaluator that `auto` may choose.
 void measure_all(Device& device, const BenchMap& map, CostRows* rows) {
   const std::vector<double> small = {1, 2, 4, 8, 16, 32}, large = {32, 128, 512};
   {

@@ -42,8 +42,8 @@ int run(const char* json_path) {
   std::array<std::unique_ptr<PatchBrdf>, kMaskings> brdfs;
   const std::array<Masking, kMaskings> maskings = {Masking::geometric, Masking::filtered, Masking::exact};
   for (int n = 0; n < kMaskings; ++n) {
-    brdfs[n] = make_patch_brdf("beckmanns", device, surface,
-                               {{"masking", masking_names()[static_cast<std::size_t>(maskings[n])]}});
+    brdfs[n] =
+        make_patch_brdf("beckmanns", device, surface, {{"masking", std::string(word_of(maskings[n]))}});
   }
   fmt::print("device {}\n{:>6} {:>8} {:>16} {:>16} {:>16} {:>10} {:>10} {:>10}\n", device.info().name,
              "sigma", "degrees", "geometric q/s", "filtered q/s", "exact q/s", "filtered", "exact", "MiB");

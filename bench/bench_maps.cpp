@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "host/base/constants.h"
-#include "host/surface/random.h"
-#include "host/verify/accuracy.h"
+#include "host/base/random.h"
+#include "host/surface/texel_footprint.h"
 
 namespace mica::host::bench {
 namespace {}  // namespace
@@ -34,7 +34,7 @@ std::vector<Query> random_queries(const Surface& surface, double sigma_texels, d
                                   std::size_t count) {
   std::vector<Query> queries(count);
   for (std::size_t n = 0; n < count; ++n) {
-    const auto random = [&](std::uint64_t stream) { return synthesis::random_unit(7, stream, n); };
+    const auto random = [&](std::uint64_t stream) { return random_unit(7, stream, n); };
     const auto disk = [&](std::uint64_t stream) {
       const double radius = std::sqrt(-2 * std::log(1 - random(stream))),
                    angle = 2 * kPi * random(stream + 1);

@@ -46,8 +46,7 @@ std::vector<Contender> make_contenders(Device& device, const Surface& surface) {
       CavitySettings settings;
       settings.energy = energy, settings.per_texel = per_texel;
       contenders.push_back(
-          {fmt::format("cavities, {}, spacing {}", lost_energy_names()[static_cast<int>(energy)],
-                       per_texel == 1 ? "1" : "0.5"),
+          {fmt::format("cavities, {}, spacing {}", word_of(energy), per_texel == 1 ? "1" : "0.5"),
            std::make_unique<CavityBrdf>(device, surface, settings)});
     }
   }

@@ -61,7 +61,7 @@ struct Row {
   double elevation, alpha, density;
   Distribution distribution;
   std::unique_ptr<GridEvaluator> evaluator;
-  std::vector<double> seconds = {};  ///< of the kernel alone, sorted
+  std::vector<double> seconds = {};  ///< seconds of the kernel alone, sorted
 };
 
 std::vector<Row> make_rows(Device& device, std::size_t queries) {

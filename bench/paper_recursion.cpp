@@ -12,7 +12,7 @@
 namespace mica::host::bench {
 namespace {
 
-constexpr float cutoff = 5;  ///< standard deviations, [Yan14] sec. 6
+constexpr float kCutoff = 5;  ///< standard deviations, [Yan14] sec. 6
 
 void include(PaperRecursion::Box* box, const PaperRecursion::Box& other) {
   box->low = {std::min(box->low.s, other.low.s), std::min(box->low.t, other.low.t)};
@@ -82,13 +82,13 @@ class Traversal {
     s_ = static_cast<float>(query.half_vector.x());
     t_ = static_cast<float>(query.half_vector.y());
     precision_r_ = 1 / (query.roughness * query.roughness);
-    reach_r_squared_ = static_cast<float>(cutoff * cutoff / precision_r_);
+    reach_r_squared_ = static_cast<float>(kCutoff * kCutoff / precision_r_);
     constexpr double two_pi = 6.28318530717958647692;
     scale_ = precision_r_ / (two_pi * two_pi * std::sqrt(determinant));
   }
 
   double run() {
-    const double reach_x = cutoff * std::sqrt(cov_xx_), reach_y = cutoff * std::sqrt(cov_yy_);
+    const double reach_x = kCutoff * std::sqrt(cov_xx_), reach_y = kCutoff * std::sqrt(cov_yy_);
     const int width = recursion_.width_, height = recursion_.height_;
     const int first_x = static_cast<int>(std::floor((mean_x_ - reach_x) / width));
     const int last_x = static_cast<int>(std::floor((mean_x_ + reach_x) / width));
@@ -150,7 +150,7 @@ class Traversal {
     const float side = static_cast<float>(1 << level);
     const float x = (static_cast<float>(i) + 0.5f) * side - origin_x_,
                 y = (static_cast<float>(j) + 0.5f) * side - origin_y_;
-    const float a = whiten_x_ * x, b = shear_ * x + whiten_y_ * y, reach = cutoff + half_diagonal_ * side;
+    const float a = whiten_x_ * x, b = shear_ * x + whiten_y_ * y, reach = kCutoff + half_diagonal_ * side;
     return a * a + b * b > reach * reach;
   }
 

@@ -12,7 +12,7 @@ struct Quadratic {
 
 namespace paper {
 
-inline constexpr double sqrt_pi = 1.77245385090551602730;
+inline constexpr double kSqrtPi = 1.77245385090551602730;
 
 /// erf on [-inf, -3], [-3, -2], ..., [2, 3], [3, inf] as c0 + c1 x + c2 x^2: the continuous least squares
 /// fit.
@@ -45,7 +45,7 @@ struct OuterGaussian {
   /// [Yan14] Eq. 12, expquad, between two places for k0 + k1 y + k2 y^2.
   double expquad(const Place& from, const Place& to, double k0, double k1, double k2) const {
     const double half_inverse = 0.5 / a;
-    const double m0 = 0.5 * sqrt_pi / root_a * (to.error_function - from.error_function);
+    const double m0 = 0.5 * kSqrtPi / root_a * (to.error_function - from.error_function);
     const double m1 = half_inverse * (from.exponential - to.exponential);
     const double m2 = half_inverse * (m0 + from.y * from.exponential - to.y * to.exponential);
     return k0 * m0 + k1 * m1 + k2 * m2;

@@ -17,10 +17,10 @@
 #include "host/methods/auto/auto_evaluator.h"
 #include "host/methods/auto/sampled_error.h"
 #include "host/methods/gaussians/mixture_evaluator.h"
-#include "host/methods/registry.h"
 #include "host/methods/pyramid/pyramid_evaluator.h"
+#include "host/methods/registry.h"
 #include "host/methods/triangles/triangle_evaluator.h"
-#include "host/verify/accuracy.h"
+#include "host/surface/texel_footprint.h"
 #include "mica/error.h"
 
 namespace mica::host::bench {
@@ -139,7 +139,8 @@ Bench::Bench(Device& device, const std::string& name, double roughness, const Ef
              watch.seconds() - seconds);
   for (const int elements : {1, 2, 4})
     mixtures_.push_back(
-        {fmt::format("gaussians {}", elements), make_evaluator("gaussians", device, surface_, {{"elements", std::to_string(elements)}})});
+        {fmt::format("gaussians {}", elements),
+         make_evaluator("gaussians", device, surface_, {{"elements", std::to_string(elements)}})});
 }
 
 void Bench::run() {

@@ -27,7 +27,7 @@ enum {
   // Shorts a node of a mixture, sixteen of each: an axis x, y; the elements' means along it min, max and
   // across it min, max; how far elements spread along and across.
   MICA_MIXTURE_NODE_STRIDE = 128,
-  MICA_SPREAD_UNIT = 2,  // of the spreads of `gaussians`, in units of their means
+  MICA_SPREAD_UNIT = 2,  // unit of the spreads of `gaussians`, in units of their means
   // Shorts a leaf of lobes: mean_x[16], mean_y[16], and the rows of the spread's Cholesky factor xx[16],
   // yx[16], yy[16]; then four floats: the mean that the means are counted from, x and y, and the units of
   // means and of spreads.
@@ -52,7 +52,7 @@ enum {
   MICA_GLINT_WHITEN_2X,
   MICA_GLINT_WHITEN_2Y,
   MICA_GLINT_LEVEL,   // int: the finer level l; its angular cells have a width of 2^-l
-  MICA_GLINT_WEIGHT,  // of the finer level, in [0, 1]; the next has the rest
+  MICA_GLINT_WEIGHT,  // weight of the finer level, in [0, 1]; the next has the rest
   MICA_GLINT_HALF_S,  // half vector on the unit disk
   MICA_GLINT_HALF_T,
   MICA_GLINT_INVERSE_ALPHA_X,  // 1 / roughness of the smooth distribution
@@ -60,7 +60,7 @@ enum {
   MICA_GLINT_MICRO_S,  // standard deviation of one glint's lobe on the disk of half vectors
   MICA_GLINT_MICRO_T,
   MICA_GLINT_SEED,        // int
-  MICA_GLINT_SHARE,       // of the light, for this process
+  MICA_GLINT_SHARE,       // share of the light, for this process
   MICA_GLINT_PRESENCE,    // share of its glints that are there: share * kept
   MICA_GLINT_BRIGHTNESS,  // 1 / kept: of the glints that are there
   MICA_GLINT_FIELDS,
@@ -92,9 +92,9 @@ typedef struct {
   mica_map_query map;                 // its normals do not matter
   MICA_FLOAT view_x, view_y, view_z;  // unit, above the horizon
   MICA_FLOAT roughness;               // standard deviation on the disk
-  MICA_INT seed_i, seed_j;            // of a draw: in [0, width) x [0, height) times the seeds a texel
-  MICA_INT key_low, key_high;         // of its random numbers
-  MICA_FLOAT lobe_sigma;              // of the specular compensation: standard deviation of (i_x, i_y)
+  MICA_INT seed_i, seed_j;     // where a draw starts: in [0, width) x [0, height) times the seeds a texel
+  MICA_INT key_low, key_high;  // key of its random numbers
+  MICA_FLOAT lobe_sigma;       // standard deviation of (i_x, i_y) in the specular compensation
 } mica_cavity_query;
 
 // One query of a Gaussian mixture, in texel units. [Yan16]. With tau_i^2 = sigma_i^2 + k, sigma_i and a_i the
@@ -113,17 +113,17 @@ typedef struct {
 // used. [Che18] Eq. 9.
 typedef struct {
   mica_map_query map;
-  MICA_FLOAT slope_x, slope_y;            // of the half vector,
+  MICA_FLOAT slope_x, slope_y;            // slope of the half vector,
   MICA_FLOAT slope_rest_x, slope_rest_y;  // and what floats leave of it
-  MICA_FLOAT slope_unit;                  // of the bounds of nodes
+  MICA_FLOAT slope_unit;                  // unit of the bounds of nodes
   MICA_FLOAT spread_variance;  // what a squared `spread` of a node counts for, in roughnesses squared
 } mica_lobe_query;
 
 // A footprint on a level of the pyramid of slopes, in cells: a Gaussian of the cells' weights.
 typedef struct {
-  MICA_INT offset;         // of the level's first number; -1: the footprint is too small for all of them
-  MICA_INT width, height;  // cells a period
-  MICA_FLOAT mean_unit, spread_unit;   // of its numbers
+  MICA_INT offset;  // where the level's first number is; -1: the footprint is too small for all of them
+  MICA_INT width, height;              // cells a period
+  MICA_FLOAT mean_unit, spread_unit;   // units of its numbers
   MICA_INT cell_i, cell_j;             // mean, whole cells
   MICA_FLOAT cell_x, cell_y;           // and the rest, in [0, 1)
   MICA_FLOAT sigma_y, shear, sigma_x;  // y has sigma_y, x given y the mean shear * y and sigma_x
@@ -131,18 +131,18 @@ typedef struct {
 
 // One question of a patch BRDF. [Che18] Eq. 7
 typedef struct {
-  mica_lobe_query lobe;  // of the half vector
+  mica_lobe_query lobe;  // what is asked about the half vector
   mica_slope_footprint slopes;
   MICA_FLOAT view_x, view_y, view_z;
   MICA_FLOAT light_x, light_y, light_z;
-  MICA_FLOAT weight;  // of an element at the footprint's mean
+  MICA_FLOAT weight;  // weight of an element at the footprint's mean
 } mica_patch_query;
 
 // One query of `smooth`.
 typedef struct {
-  mica_map_query map;  // of which it uses slot, inverse_roughness and scale
+  mica_map_query map;  // it uses slot, inverse_roughness and scale
   mica_slope_footprint slopes;
-  MICA_FLOAT slope_x, slope_y;  // of the half vector
+  MICA_FLOAT slope_x, slope_y;  // slope of the half vector
 } mica_smooth_query;
 
 #ifdef __cplusplus

@@ -9,11 +9,11 @@
 #include <functional>
 
 #include "host/base/constants.h"
+#include "host/base/random.h"
 #include "host/image/image.h"
 #include "host/methods/grid/grid_brdf.h"
 #include "host/reference/glint_grid.h"
 #include "host/report/svg.h"
-#include "host/surface/random.h"
 #include "mica/error.h"
 
 namespace mica::host::bench {
@@ -95,7 +95,7 @@ reference::GlintProcess smooth_of(Distribution distribution, double alpha) {
 class Random {
  public:
   explicit Random(std::uint64_t seed) : seed_(seed) {}
-  double operator()() { return synthesis::random_unit(seed_, 0, counter_++); }
+  double operator()() { return random_unit(seed_, 0, counter_++); }
 
  private:
   std::uint64_t seed_, counter_ = 0;
@@ -136,7 +136,7 @@ double energy_of_glints(Device& device, Distribution distribution, double alpha)
   return sum / static_cast<double>(draws.size());
 }
 
-/// The same light of the smooth distribution: its D is that of a grid so dense that no glint can be told.
+/// The energy of the smooth distribution: its D is that of a grid so dense that no glint can be told.
 double energy_of_smooth(Device& device, Distribution distribution, double alpha) {
   GlintsDescription glints = glints_of(distribution, alpha);
   glints.density = 1e12;
@@ -195,7 +195,7 @@ Estimates glint_estimates(GridBrdf* brdf, int footprints, int draws) {
   Random random(11);
   for (int f = 0; f < footprints; ++f) {
     std::vector<SampleQuery> queries(static_cast<std::size_t>(draws), {view_of(&random), 0});
-    for (std::size_t n = 0; n < queries.size(); ++n) queries[n].key = synthesis::random_bits(3, f, n);
+    for (std::size_t n = 0; n < queries.size(); ++n) queries[n].key = random_bits(3, f, n);
     std::vector<double>& row = estimates.emplace_back();
     for (const BrdfSample& sample : brdf->sample(queries))
       row.push_back(sample.weight_single * radiance(sample.light.cast<double>()));

@@ -17,8 +17,8 @@
 
 namespace {
 
-constexpr int width = 512, height = 256;
-constexpr int samples = 4;  // a pixel and axis
+constexpr int kWidth = 512, kHeight = 256;
+constexpr int kSamples = 4;  // a pixel and axis
 
 using Color = Eigen::Vector3d;
 
@@ -30,7 +30,7 @@ double step(double x, double softness) {
 
 /// A rectangle that faces the set, brightest in its middle.
 struct Softbox {
-  Eigen::Vector3d towards;         ///< of any length
+  Eigen::Vector3d towards;         ///< has any length
   double half_width, half_height;  ///< at distance 1
   Color radiance;
 
@@ -47,7 +47,7 @@ struct Softbox {
 
 /// A bare lamp.
 struct Bulb {
-  Eigen::Vector3d towards;  ///< of any length
+  Eigen::Vector3d towards;  ///< has any length
   double radius;            ///< radians
   Color radiance;
 
@@ -87,14 +87,14 @@ Color radiance(const Eigen::Vector3d& direction) {
 /// Mean over a pixel; the middle of the image lies along +y, its right along +x.
 Color pixel(int column, int row) {
   Color sum = Color::Zero();
-  for (int n = 0; n < samples * samples; ++n) {
-    const int right = n % samples, down = n / samples;
-    const double x = column + (right + 0.5) / samples, y = row + (down + 0.5) / samples;
-    const double longitude = 2 * kPi * (x / width - 0.5), colatitude = kPi * y / height;
+  for (int n = 0; n < kSamples * kSamples; ++n) {
+    const int right = n % kSamples, down = n / kSamples;
+    const double x = column + (right + 0.5) / kSamples, y = row + (down + 0.5) / kSamples;
+    const double longitude = 2 * kPi * (x / kWidth - 0.5), colatitude = kPi * y / kHeight;
     sum += radiance({std::sin(longitude) * std::sin(colatitude), std::cos(longitude) * std::sin(colatitude),
                      std::cos(colatitude)});
   }
-  return sum / (samples * samples);
+  return sum / (kSamples * kSamples);
 }
 
 }  // namespace
@@ -105,13 +105,13 @@ int main(int argc, char** argv) {
     return 2;
   }
   std::vector<float> pixels;
-  for (int row = 0; row < height; ++row) {
-    for (int column = 0; column < width; ++column) {
+  for (int row = 0; row < kHeight; ++row) {
+    for (int column = 0; column < kWidth; ++column) {
       const Color color = pixel(column, row);
       for (int channel = 0; channel < 3; ++channel) pixels.push_back(static_cast<float>(color[channel]));
     }
   }
-  OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::HALF);
+  OIIO::ImageSpec spec(kWidth, kHeight, 3, OIIO::TypeDesc::HALF);
   spec.attribute("compression", "zip");
   const std::unique_ptr<OIIO::ImageOutput> file = OIIO::ImageOutput::create(argv[1]);
   if (!file || !file->open(argv[1], spec) || !file->write_image(OIIO::TypeDesc::FLOAT, pixels.data()) ||

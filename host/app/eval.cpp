@@ -61,7 +61,7 @@ nlohmann::json summary(const EvalOptions& options, const EvalSubject& subject, c
   return json;
 }
 
-/// Of methods with a roughness of their own, that is the rows' where the table has none.
+/// A method's own roughness, where it has one, is the rows' where the table has none.
 QueryTable read_queries(const EvalOptions& options, const MethodSettings& settings) {
   if (!settings.own_roughness()) return QueryTable(options.queries, options.roughness);
   const bool given = options.method.given("microroughness");

@@ -2,28 +2,12 @@
 
 #include <spdlog/spdlog.h>
 
-#include <map>
-
 namespace mica::host::app {
 namespace {
 
-const std::map<std::string, Encoding> kEncodings = {{"unorm", Encoding::unorm},
-                                                    {"signed", Encoding::signed_float},
-                                                    {"height", Encoding::height},
-                                                    {"slope", Encoding::slope}};
-const std::map<std::string, GreenDirection> kGreens = {{"up", GreenDirection::up},
-                                                       {"down", GreenDirection::down}};
-const std::map<std::string, Interpolation> kInterpolations = {{"nearest", Interpolation::nearest},
-                                                              {"bilinear", Interpolation::bilinear},
-                                                              {"bicubic", Interpolation::bicubic}};
-const std::map<std::string, TexelRepair> kRepairs = {{"repair", TexelRepair::repair},
-                                                     {"refuse", TexelRepair::refuse}};
-
-template <typename T>
-CLI::Validator one_of(const std::map<std::string, T>& values) {
-  std::vector<std::string> names;
-  for (const auto& [name, value] : values) names.push_back(name);
-  return CLI::IsMember(names);
+template <typename Enum>
+CLI::Validator one_of() {
+  return CLI::IsMember(list_words<Enum>());
 }
 
 }  // namespace
@@ -35,16 +19,16 @@ void add_map_options(CLI::App* command, MapOptions* options) {
                    "What its pixels are: unorm (n = 2c - 1), signed (n = c), height or slope; "
                    "default: unorm for integer pixels, signed for float pixels")
       ->type_name("NAME")
-      ->check(one_of(kEncodings));
+      ->check(one_of<Encoding>());
   command->add_option("--green", options->green, "Where a positive green channel leans: up or down the image")
       ->type_name("NAME")
-      ->check(one_of(kGreens))
+      ->check(one_of<GreenDirection>())
       ->capture_default_str();
   command
       ->add_option("--interpolation", options->interpolation,
                    "Of the normals between texels: nearest, bilinear or bicubic (Catmull-Rom)")
       ->type_name("NAME")
-      ->check(one_of(kInterpolations))
+      ->check(one_of<Interpolation>())
       ->capture_default_str();
   command
       ->add_option(
@@ -52,7 +36,7 @@ void add_map_options(CLI::App* command, MapOptions* options) {
           "Texels that are NaN, infinite or of zero length: refuse the map, or repair them from their "
           "neighbours")
       ->type_name("NAME")
-      ->check(one_of(kRepairs))
+      ->check(one_of<TexelRepair>())
       ->capture_default_str();
   command
       ->add_option("--height-scale", options->height_scale,
@@ -65,14 +49,14 @@ Surface load_map(const MapOptions& options, SurfaceReport* report) {
   MapFile file;
   file.path = options.path;
   file.encoding_given = !options.encoding.empty();
-  if (file.encoding_given) file.encoding = kEncodings.at(options.encoding);
-  file.green = kGreens.at(options.green);
-  file.invalid = kRepairs.at(options.invalid);
+  if (file.encoding_given) file.encoding = parse_word<Encoding>(options.encoding).value();
+  file.green = parse_word<GreenDirection>(options.green).value();
+  file.invalid = parse_word<TexelRepair>(options.invalid).value();
   file.height_scale = options.height_scale;
   SurfaceDescription description;
   description.name = "map";
   description.source = file;
-  description.interpolation = kInterpolations.at(options.interpolation);
+  description.interpolation = parse_word<Interpolation>(options.interpolation).value();
   Surface surface = make_surface(description, report);
   log_report(*report);
   return surface;

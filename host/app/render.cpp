@@ -65,7 +65,7 @@ class FrameLoop {
     }
   }
 
-  /// Of all frames, or of the only one.
+  /// The JSON of all frames, or of the only one.
   std::string json() const { return job_.frames.given ? frames_json(reports_) : reports_.front(); }
 
   ExitCode exit_code() const {

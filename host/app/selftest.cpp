@@ -14,6 +14,7 @@
 #include "host/methods/gaussians/mixture_evaluator.h"
 #include "host/methods/standard.h"
 #include "host/reference/gaussian_mixture.h"
+#include "host/surface/texel_footprint.h"
 #include "host/verify/accuracy.h"
 #include "host/verify/device_checks.h"
 #include "host/verify/grid_checks.h"

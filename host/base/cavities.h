@@ -1,5 +1,7 @@
 #pragma once
 
+#include "host/base/words.h"
+
 namespace mica::host {
 
 /// Where the light goes that bounces more than once inside V-shaped cavities: f_2+. [Che19] secs. 3.5 and 5.2
@@ -12,6 +14,17 @@ enum class Compensation {
 enum class LostEnergy {
   exact,  ///< every seed under the footprint. [Che19] Eq. 15
   table   ///< Gaussians with the moments of the footprint's slopes. [Che19] Eq. 18
+};
+
+template <>
+struct Words<Compensation> {
+  static constexpr Word<Compensation> all[] = {{"diffuse", Compensation::diffuse},
+                                               {"specular", Compensation::specular}};
+};
+
+template <>
+struct Words<LostEnergy> {
+  static constexpr Word<LostEnergy> all[] = {{"exact", LostEnergy::exact}, {"table", LostEnergy::table}};
 };
 
 }  // namespace mica::host

@@ -1,7 +1,6 @@
 #pragma once
 
-#include <string>
-#include <vector>
+#include "host/base/words.h"
 
 namespace mica::host {
 
@@ -12,9 +11,10 @@ enum class Masking {
   geometric  ///< one roughness for the whole map, and cosines to the geometric normal. [Yan14] Eq. 1
 };
 
-/// The words of Masking, in its order.
-inline std::vector<std::string> masking_names() {
-  return {"exact", "filtered", "geometric"};
-}
+template <>
+struct Words<Masking> {
+  static constexpr Word<Masking> all[] = {
+      {"exact", Masking::exact}, {"filtered", Masking::filtered}, {"geometric", Masking::geometric}};
+};
 
 }  // namespace mica::host

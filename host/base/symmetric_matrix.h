@@ -9,7 +9,7 @@ namespace mica::host {
 
 struct PrincipalAxes {
   Eigen::Vector2d eigenvalues;   ///< the smaller one first
-  Eigen::Matrix2d eigenvectors;  ///< of length 1, in columns
+  Eigen::Matrix2d eigenvectors;  ///< unit, in columns
 };
 
 /// By steps of QR until nothing is left beside the diagonal; looks at the lower triangle only.

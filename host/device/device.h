@@ -62,7 +62,7 @@ class Device {
 
   /// What was compiled so far: files with their options.
   std::vector<std::string> programs() const;
-  /// Of all buffers that there are.
+  /// Bytes of all buffers that there are.
   std::size_t bytes() const { return bytes_->now; }
   /// The most that all buffers together have taken at a time, since the last call of `forget_peak`.
   std::size_t peak_bytes() const { return bytes_->peak; }

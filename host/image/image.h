@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "host/base/words.h"
+
 namespace mica::host {
 
 /// Named float channels of equal size, rows from the top, and string metadata.
@@ -29,7 +31,15 @@ enum class ToneMap {
   filmic,    ///< a film's S-shaped curve: contrast in the middle, soft ends [Narkowicz16]
 };
 
-/// Of a radiance >= 0. @return [0, 1].
+template <>
+struct Words<ToneMap> {
+  static constexpr Word<ToneMap> all[] = {{"clamp", ToneMap::clamp},
+                                          {"shoulder", ToneMap::shoulder},
+                                          {"reinhard", ToneMap::reinhard},
+                                          {"filmic", ToneMap::filmic}};
+};
+
+/// The brightness of a radiance >= 0. @return [0, 1].
 double tone_mapped(ToneMap tone_map, double radiance);
 
 /// Writes R, G, B (or the only channel as grey) as an 8-bit sRGB PNG after 2^exposure scaling. NaN is shown

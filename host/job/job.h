@@ -17,8 +17,8 @@ struct ImageSettings {
   int subpixels = 4;              ///< footprints a pixel and axis [Yan14 sec. 3]
   int samples = 16;               ///< directions a subpixel in which light from all around is gathered
   int max_bounces = 1;            ///< reflections of light on its way to the camera, at most
-  std::vector<std::string> aovs;  ///< of: ndf, uv, footprint, normal, queries, error
-  double exposure = 0;            ///< of the PNG preview, in stops
+  std::vector<std::string> aovs;  ///< any of ndf, uv, footprint, normal, queries and error
+  double exposure = 0;            ///< exposure of the PNG preview, in stops
   ToneMap tone_map = ToneMap::shoulder;
 };
 
@@ -42,7 +42,7 @@ struct AccuracySettings {
 /// A validated job: everything in range, every name resolved, every input file present.
 struct Job {
   std::string path;
-  std::uint64_t hash = 0;  ///< of the text and the overrides
+  std::uint64_t hash = 0;  ///< hash of the text and the overrides
   std::uint64_t seed = 1;
   ImageSettings image;
   FrameSettings frames;

@@ -13,7 +13,7 @@
 namespace mica::host {
 namespace {
 
-constexpr std::size_t largest_job = 1 << 20;  // bytes
+constexpr std::size_t kLargestJob = 1 << 20;  // bytes
 
 /// Stops soon after the largest size of a job, so that a device that never ends may be named.
 std::string read_text(const std::string& path) {
@@ -25,16 +25,16 @@ std::string read_text(const std::string& path) {
   do {
     file.read(block.data(), std::streamsize(block.size()));
     text.append(block.data(), std::size_t(file.gcount()));
-  } while (file && text.size() <= largest_job);
+  } while (file && text.size() <= kLargestJob);
   if (file.bad()) throw FileError(fmt::format("{}: cannot be read: {}", path, reason()));
   return text;
 }
 
 toml::table parse_job(const std::string& text, const std::string& path, Issues& issues) {
   try {
-    if (text.size() <= largest_job) return parse_toml(text, path);
+    if (text.size() <= kLargestJob) return parse_toml(text, path);
     issues.add({{1, 1}, {1, 1}, nullptr},
-               fmt::format("found more than {0} bytes; expected at most {0}", largest_job));
+               fmt::format("found more than {0} bytes; expected at most {0}", kLargestJob));
   } catch (const toml::parse_error& error) {
     issues.add(error.source(), printable(error.description()));
   }
@@ -57,11 +57,7 @@ ImageSettings read_image(TableReader& table) {
   const std::vector<std::string_view> aovs = {"ndf", "uv", "footprint", "normal", "queries", "error"};
   table.read("aovs", image.aovs, aovs);
   table.read("exposure", image.exposure, closed(-32, 32));
-  const Choices<ToneMap> tone_maps = {{"clamp", ToneMap::clamp},
-                                      {"shoulder", ToneMap::shoulder},
-                                      {"reinhard", ToneMap::reinhard},
-                                      {"filmic", ToneMap::filmic}};
-  table.read("tone_map", image.tone_map, tone_maps);
+  table.read("tone_map", image.tone_map);
   return image;
 }
 

@@ -6,7 +6,7 @@
 namespace mica::host {
 namespace {
 
-const Interval power = closed(0, 1e9);
+const Interval kPower = closed(0, 1e9);
 
 void read_direction(TableReader& light, Eigen::Vector3d& direction, std::string_view meaning) {
   light.read("direction", direction, kCoordinate);
@@ -17,26 +17,26 @@ void read_direction(TableReader& light, Eigen::Vector3d& direction, std::string_
 
 void read_values(TableReader& light, PointLight& point) {
   light.read("position", point.position, kCoordinate);
-  light.read("intensity", point.intensity, power);
+  light.read("intensity", point.intensity, kPower);
 }
 
 void read_values(TableReader& light, DirectionalLight& directional) {
   read_direction(light, directional.direction,
                  "found no length; expected the direction in which the light travels");
-  light.read("irradiance", directional.irradiance, power);
+  light.read("irradiance", directional.irradiance, kPower);
 }
 
 void read_values(TableReader& light, SphereLight& sphere) {
   light.read("position", sphere.position, kCoordinate);
   light.read("radius", sphere.radius, kExtent);
-  light.read("intensity", sphere.intensity, power);
+  light.read("intensity", sphere.intensity, kPower);
 }
 
 void read_values(TableReader& light, DiskLight& disk) {
   light.read("position", disk.position, kCoordinate);
   read_direction(light, disk.direction, "found no length; expected the direction that the disk faces");
   light.read("radius", disk.radius, kExtent);
-  light.read("intensity", disk.intensity, power);
+  light.read("intensity", disk.intensity, kPower);
 }
 
 void read_lamp(const LightDescription& kind, TableReader& light, SceneDescription& scene) {
@@ -55,14 +55,14 @@ EnvironmentLight make_environment(TableReader& light) {
   EnvironmentLight environment;
   light.require("image", "a lat-long EXR or HDR image");
   light.read_file("image", environment.path);
-  light.read("scale", environment.radiance, power);
+  light.read("scale", environment.radiance, kPower);
   light.read("rotation", environment.rotation_degrees, closed(-360, 360));
   return environment;
 }
 
 EnvironmentLight make_furnace(TableReader& light) {
   EnvironmentLight furnace;
-  light.read("radiance", furnace.radiance, power);
+  light.read("radiance", furnace.radiance, kPower);
   return furnace;
 }
 

@@ -9,7 +9,8 @@
 namespace mica::host {
 namespace {
 
-const Interval reflectance = closed(0, 1);
+const Interval kReflectance = closed(0, 1);
+
 Fresnel read_conductor(TableReader& specular) {
   ConductorFresnel conductor;
   if (specular.require("eta", "it beside \"k\"")) specular.read("eta", conductor.eta, open_low(0, 100));
@@ -25,7 +26,7 @@ Fresnel read_dielectric(TableReader& specular) {
 
 Fresnel read_color(TableReader& specular) {
   ColorFresnel color;
-  specular.read("color", color.color, reflectance);
+  specular.read("color", color.color, kReflectance);
   return color;
 }
 
@@ -126,7 +127,7 @@ std::vector<MaterialDescription> read_materials(TableReader& job,
     material.roughness = material.settings->own_roughness().value_or(material.roughness);
     if (const GlintsDescription* const glints = material.settings->glints()) material.glints = *glints;
     table.read_table("specular", [&](TableReader& specular) { material.specular = read_specular(specular); });
-    table.read("diffuse", material.diffuse, reflectance);
+    table.read("diffuse", material.diffuse, kReflectance);
     table.read_table("coat", [&](TableReader& coat) { material.coat = read_coat(coat); });
     if (material.coat && !method.traits().coat)
       table.report("coat",

@@ -7,7 +7,7 @@ namespace mica::host {
 namespace {
 
 // Far inside what single precision, in which rays are traced, tells apart from infinity.
-const Interval radiance = closed(0, 1e9);
+const Interval kRadiance = closed(0, 1e9);
 
 void read_camera(TableReader& table, CameraDescription& camera) {
   table.read("position", camera.position, kCoordinate);
@@ -97,7 +97,7 @@ void read_shape(TableReader& table, ShapeDescription& shape,
 }
 
 void read_background(TableReader& table, BackgroundDescription& background) {
-  table.read("color", background.color, radiance);
+  table.read("color", background.color, kRadiance);
   table.read_file("image", background.path);
   if (table.has("color") && table.has("image")) {
     table.report("image", "found an image beside a color; expected one of them");

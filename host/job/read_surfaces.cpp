@@ -9,19 +9,8 @@ namespace mica::host {
 namespace {
 
 // What synthesis takes; a map of 16384^2 normals is 4 GiB.
-const Interval resolutions = closed(4, 16384);
-const Interval directions = closed(-360, 360);  // degrees
-
-const Choices<Interpolation> interpolations = {{"nearest", Interpolation::nearest},
-                                               {"bilinear", Interpolation::bilinear},
-                                               {"bicubic", Interpolation::bicubic}};
-const Choices<Encoding> encodings = {{"unorm", Encoding::unorm},
-                                     {"signed", Encoding::signed_float},
-                                     {"height", Encoding::height},
-                                     {"slope", Encoding::slope}};
-const Choices<GreenDirection> green_directions = {{"up", GreenDirection::up}, {"down", GreenDirection::down}};
-const Choices<ScratchProfile> profiles = {{"v", ScratchProfile::v}, {"rounded", ScratchProfile::rounded}};
-const Choices<TexelRepair> repairs = {{"repair", TexelRepair::repair}, {"refuse", TexelRepair::refuse}};
+const Interval kResolutions = closed(4, 16384);
+const Interval kDirections = closed(-360, 360);  // degrees
 
 /// A default that is too large for the job's other settings.
 void limit(double& value, double greatest) {
@@ -32,9 +21,9 @@ SurfaceDescription read_map_file(TableReader& surface) {
   MapFile map;
   surface.read_file("file", map.path);
   map.encoding_given = surface.has("encoding");
-  surface.read("encoding", map.encoding, encodings);
-  surface.read("green", map.green, green_directions);
-  surface.read("invalid", map.invalid, repairs);
+  surface.read("encoding", map.encoding);
+  surface.read("green", map.green);
+  surface.read("invalid", map.invalid);
   surface.read("height_scale", map.height_scale, open_low(0, 1e6));
   if (surface.has("height_scale") && map.encoding != Encoding::height) {
     surface.report("height_scale", "found a scale of heights; expected encoding = \"height\" with it");
@@ -44,7 +33,7 @@ SurfaceDescription read_map_file(TableReader& surface) {
 
 SurfaceDescription read_spectrum(TableReader& surface) {
   SpectrumSurface spectrum;
-  surface.read("resolution", spectrum.resolution, resolutions);
+  surface.read("resolution", spectrum.resolution, kResolutions);
   surface.read("rms_slope", spectrum.rms_slope, closed(0, 5));
   surface.read("correlation", spectrum.correlation_texels, open_low(0, spectrum.resolution));
   surface.read("seed", spectrum.seed);
@@ -53,7 +42,7 @@ SurfaceDescription read_spectrum(TableReader& surface) {
 
 SurfaceDescription read_flakes(TableReader& surface) {
   FlakesSurface flakes;
-  surface.read("resolution", flakes.resolution, resolutions);
+  surface.read("resolution", flakes.resolution, kResolutions);
   surface.read("flake_size", flakes.flake_size_texels, closed(1, flakes.resolution / 4.0));
   surface.read("alpha", flakes.alpha, closed(0, 2));
   surface.read("seed", flakes.seed);
@@ -62,20 +51,20 @@ SurfaceDescription read_flakes(TableReader& surface) {
 
 SurfaceDescription read_brushed(TableReader& surface) {
   BrushedSurface brushed;
-  surface.read("resolution", brushed.resolution, resolutions);
+  surface.read("resolution", brushed.resolution, kResolutions);
   const Interval correlations = closed(1e-3, brushed.resolution);
   limit(brushed.correlation_along_texels, brushed.resolution);
   surface.read("rms_slope", brushed.rms_slope, closed(0, 5));
   surface.read("correlation_along", brushed.correlation_along_texels, correlations);
   surface.read("correlation_across", brushed.correlation_across_texels, correlations);
-  surface.read("direction", brushed.direction_degrees, directions);
+  surface.read("direction", brushed.direction_degrees, kDirections);
   surface.read("seed", brushed.seed);
   return {surface.name(), brushed, Interpolation::bilinear};
 }
 
 SurfaceDescription read_scratches(TableReader& surface) {
   ScratchesSurface scratches;
-  surface.read("resolution", scratches.resolution, resolutions);
+  surface.read("resolution", scratches.resolution, kResolutions);
   surface.read("density", scratches.density, closed(0, 4));
   limit(scratches.length_texels, scratches.resolution);
   surface.read("length", scratches.length_texels, closed(2, scratches.resolution));
@@ -84,17 +73,17 @@ SurfaceDescription read_scratches(TableReader& surface) {
   limit(scratches.depth_texels, scratches.width_texels);
   surface.read("depth", scratches.depth_texels, closed(0, scratches.width_texels));
   surface.read("variation", scratches.variation, closed(0, 0.9));
-  surface.read("direction", scratches.direction_degrees, directions);
+  surface.read("direction", scratches.direction_degrees, kDirections);
   surface.read("spread", scratches.spread_degrees, closed(0, 90));
   surface.read("bend", scratches.bend, closed(0, 0.2));
-  surface.read("profile", scratches.profile, profiles);
+  surface.read("profile", scratches.profile);
   surface.read("seed", scratches.seed);
   return {surface.name(), scratches, Interpolation::bilinear};
 }
 
 SurfaceDescription read_dents(TableReader& surface) {
   DentsSurface dents;
-  surface.read("resolution", dents.resolution, resolutions);
+  surface.read("resolution", dents.resolution, kResolutions);
   surface.read("density", dents.density, closed(0, 16));
   limit(dents.radius_low_texels, dents.resolution);
   limit(dents.radius_high_texels, dents.resolution);
@@ -112,7 +101,7 @@ SurfaceDescription read_dents(TableReader& surface) {
 
 SurfaceDescription read_bumps(TableReader& surface) {
   BumpsSurface bumps;
-  surface.read("resolution", bumps.resolution, resolutions);
+  surface.read("resolution", bumps.resolution, kResolutions);
   limit(bumps.cell_texels, bumps.resolution);
   surface.read("cell", bumps.cell_texels, closed(4, bumps.resolution));
   surface.read("size", bumps.size, closed(1e-3, 2));
@@ -125,10 +114,10 @@ SurfaceDescription read_bumps(TableReader& surface) {
 
 SurfaceDescription read_waves(TableReader& surface) {
   WavesSurface waves;
-  surface.read("resolution", waves.resolution, resolutions);
+  surface.read("resolution", waves.resolution, kResolutions);
   surface.read("patch", waves.patch_meters, closed(1e-6, 1e6));
   surface.read("wind_speed", waves.wind_speed, closed(1e-6, 100));
-  surface.read("wind_direction", waves.wind_direction_degrees, directions);
+  surface.read("wind_direction", waves.wind_direction_degrees, kDirections);
   surface.read("time", waves.time_seconds, closed(-1e6, 1e6));
   surface.read("time_scale", waves.time_scale, closed(0, 1e3));
   surface.read("seed", waves.seed);
@@ -191,10 +180,10 @@ LayersSurface read_layers(TableReader& table, const std::vector<SurfaceDescripti
 
 using SurfaceReader = SurfaceDescription (*)(TableReader&);
 
-const Choices<SurfaceReader> kinds = {{"spectrum", read_spectrum}, {"flakes", read_flakes},
-                                      {"brushed", read_brushed},   {"scratches", read_scratches},
-                                      {"dents", read_dents},       {"bumps", read_bumps},
-                                      {"waves", read_waves},       {"layers", read_layers_later}};
+const Choices<SurfaceReader> kKinds = {{"spectrum", read_spectrum}, {"flakes", read_flakes},
+                                       {"brushed", read_brushed},   {"scratches", read_scratches},
+                                       {"dents", read_dents},       {"bumps", read_bumps},
+                                       {"waves", read_waves},       {"layers", read_layers_later}};
 
 /// The reader of the surface's kind, null with a report when the kind is not clear.
 SurfaceReader choose_reader(TableReader& surface) {
@@ -204,7 +193,7 @@ SurfaceReader choose_reader(TableReader& surface) {
     return nullptr;
   }
   SurfaceReader reader = surface.has("file") ? read_map_file : nullptr;
-  surface.read("generate", reader, kinds);
+  surface.read("generate", reader, kKinds);
   return reader;
 }
 
@@ -220,8 +209,7 @@ std::vector<SurfaceDescription> read_surfaces(TableReader& job) {
       return;
     }
     surfaces.push_back(read(surface));
-    if (!is_layered(surfaces.back()))
-      surface.read("interpolation", surfaces.back().interpolation, interpolations);
+    if (!is_layered(surfaces.back())) surface.read("interpolation", surfaces.back().interpolation);
   });
   job.read_table("surface", [&](TableReader& tables) {
     tables.accept_any_key();
@@ -229,7 +217,7 @@ std::vector<SurfaceDescription> read_surfaces(TableReader& job) {
       if (!is_layered(surface)) continue;
       tables.read_table(surface.name, [&](TableReader& table) {
         choose_reader(table);
-        table.read("interpolation", surface.interpolation, interpolations);
+        table.read("interpolation", surface.interpolation);
         surface.source = read_layers(table, surfaces);
       });
     }

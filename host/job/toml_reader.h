@@ -7,9 +7,11 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "host/base/words.h"
 #include "host/job/issues.h"
 
 namespace mica::host {
@@ -75,6 +77,13 @@ class TableReader {
             const Interval& range);
   template <typename T>
   void read(std::string_view key, T& value, const Choices<T>& choices);
+  /// One of the words of an enum.
+  template <typename Enum, typename = std::enable_if_t<std::is_enum_v<Enum>>>
+  void read(std::string_view key, Enum& value) {
+    Choices<Enum> choices;
+    for (const Word<Enum>& entry : Words<Enum>::all) choices.emplace_back(entry.word, entry.value);
+    read(key, value, choices);
+  }
   /// Any of `choices`, each at most once.
   void read(std::string_view key, std::vector<std::string>& values,
             const std::vector<std::string_view>& choices);

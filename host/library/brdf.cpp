@@ -4,12 +4,12 @@
 
 #include <mutex>
 
+#include "host/base/random.h"
 #include "host/device/device.h"
 #include "host/library/query.h"
 #include "host/library/settings.h"
 #include "host/library/work.h"
 #include "host/methods/patch_brdf.h"
-#include "host/surface/random.h"
 #include "host/surface/surface.h"
 
 MICA_BEGIN_NAMESPACE
@@ -126,7 +126,7 @@ void Brdf::sample(const Views& views, std::uint64_t seed, Span<float> samples,
   implementation.answer<host::SampleQuery, host::BrdfSample>(
       views.count, control, &host::PatchBrdf::sample,
       [&](std::size_t n) {
-        return host::SampleQuery{host::to_view(views, n), host::synthesis::random_bits(seed, 0, n)};
+        return host::SampleQuery{host::to_view(views, n), host::random_bits(seed, 0, n)};
       },
       [&](std::size_t n, const host::BrdfSample& sample) {
         const float numbers[] = {sample.light.x(), sample.light.y(), sample.light.z(), sample.pdf,

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/base/error_norms.h"
+
 namespace mica::host::bench {
 namespace {}  // namespace
 
@@ -32,12 +34,9 @@ Timing timing_of(std::vector<double> seconds) {
 
 double relative_l2(const std::vector<float>& densities,
                    const std::vector<reference::OracleResult>& references) {
-  double squares = 0, reference_squares = 0;
-  for (std::size_t n = 0; n < references.size(); ++n) {
-    squares += std::pow(densities[n] - references[n].density, 2);
-    reference_squares += std::pow(references[n].density, 2);
-  }
-  return std::sqrt(squares / reference_squares);
+  RelativeL2 error;
+  for (std::size_t n = 0; n < references.size(); ++n) error.add(densities[n], references[n].density);
+  return error.value();
 }
 
 }  // namespace mica::host::bench

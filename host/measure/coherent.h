@@ -23,7 +23,7 @@ struct Timing {
 };
 Timing timing_of(std::vector<double> seconds);
 
-/// sqrt(sum (D - ref)^2 / sum ref^2) over a thinned set.
+/// The relative L2 error over a thinned set.
 double relative_l2(const std::vector<float>& densities,
                    const std::vector<reference::OracleResult>& references);
 

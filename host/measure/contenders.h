@@ -27,7 +27,7 @@ struct Prepared {
   Contender contender;
   std::unique_ptr<Evaluator> evaluator;  ///< null when it does not take the surface
   std::string refused;                   ///< why
-  /// The same with a kernel that answers how much it computes in place of densities; null when it cannot
+  /// The evaluator with a kernel that answers how much it computes in place of densities; null when it cannot
   /// count.
   std::unique_ptr<Evaluator> counter;
   double flops_a_count = 0;  ///< a multiply-add is two

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "host/base/error_norms.h"
 #include "host/base/stopwatch.h"
 #include "host/measure/coherent.h"
 
@@ -72,17 +73,16 @@ Speed measure_speed(Evaluator* evaluator, const std::vector<Query>& queries, con
 
 Errors errors_of(const std::vector<float>& densities, const std::vector<double>& references) {
   const double peak = *std::max_element(references.begin(), references.end());
-  double squares = 0, reference_squares = 0;
+  RelativeL2 l2;
   std::vector<double> errors;
   for (std::size_t n = 0; n < references.size(); ++n) {
     const double difference = std::abs(densities[n] - references[n]);
-    squares += difference * difference;
-    reference_squares += references[n] * references[n];
+    l2.add(densities[n], references[n]);
     errors.push_back(difference == 0 ? 0 : difference / (references[n] + 0.01 * peak));
   }
   std::sort(errors.begin(), errors.end());
   Errors result;
-  result.relative_l2 = reference_squares > 0 ? std::sqrt(squares / reference_squares) : 0;
+  result.relative_l2 = l2.has_reference() ? l2.value() : 0;
   result.percentile_99 = errors[static_cast<std::size_t>(0.99 * static_cast<double>(errors.size() - 1))];
   result.maximum = errors.back();
   return result;

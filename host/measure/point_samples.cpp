@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "host/base/constants.h"
+#include "host/base/random.h"
 #include "host/base/symmetric_matrix.h"
 #include "host/surface/interpolate.h"
-#include "host/surface/random.h"
 
 namespace mica::host::bench {
 namespace {
@@ -21,8 +21,8 @@ double point_sample_mean(const Surface& surface, const Query& query, std::int64_
   for (std::int64_t sample = 0; sample < samples; ++sample) {
     // Box and Muller.
     const std::uint64_t index = static_cast<std::uint64_t>(2 * sample);
-    const double radius = std::sqrt(-2 * std::log1p(-synthesis::random_unit(seed, n, index)));
-    const double angle = 2 * kPi * synthesis::random_unit(seed, n, index + 1);
+    const double radius = std::sqrt(-2 * std::log1p(-random_unit(seed, n, index)));
+    const double angle = 2 * kPi * random_unit(seed, n, index + 1);
     Eigen::Vector2d uv =
         query.footprint.mean_uv + factor * (radius * Eigen::Vector2d(std::cos(angle), std::sin(angle)));
     uv -= uv.array().floor().matrix();

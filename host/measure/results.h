@@ -20,7 +20,7 @@ struct Errors {
 /// Queries a second: the median of the repeats, the slowest and the fastest.
 struct Speed {
   double median = 0, slowest = 0, fastest = 0;
-  std::size_t queries = 0;  ///< of a repeat
+  std::size_t queries = 0;  ///< queries in a repeat
   int repeats = 0;
 };
 

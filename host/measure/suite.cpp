@@ -46,7 +46,7 @@ struct Suite {
   std::vector<double> sigmas_texels, roughnesses;
   std::vector<int> elements;
   Effort effort;
-  double reference_share;  ///< of 1024 queries at a small footprint; fewer at large ones
+  double reference_share;  ///< share of 1024 queries at a small footprint; fewer at large ones
   int thumbnail_side, picture_width;
 };
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "host/reference/oracle.h"
-#include "host/verify/accuracy.h"
+#include "host/surface/texel_footprint.h"
 
 namespace mica::host::bench {
 namespace {

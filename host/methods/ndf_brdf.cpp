@@ -8,12 +8,12 @@
 #include <cmath>
 
 #include "host/base/constants.h"
+#include "host/base/random.h"
+#include "host/microfacet/horizon.h"
 #include "host/microfacet/masking.h"
 #include "host/microfacet/visible_normals.h"
-#include "host/scene/shading.h"
 #include "host/surface/disk.h"
 #include "host/surface/interpolate.h"
-#include "host/surface/random.h"
 
 namespace mica::host {
 namespace {
@@ -21,7 +21,7 @@ namespace {
 enum Stream : std::uint64_t { kChoice, kDirectionX, kDirectionY, kPositionX, kPositionY };
 
 double random(const SampleQuery& query, Stream stream) {
-  return synthesis::random_unit(query.key, stream, 0);
+  return random_unit(query.key, stream, 0);
 }
 
 /// Two independent standard normal numbers. [Box and Muller 1958]
@@ -36,7 +36,7 @@ Eigen::Vector3d cosine_direction(double x, double y) {
 }
 
 bool above_horizon(const Eigen::Vector3d& view, const Eigen::Vector3d& light) {
-  return view.z() >= min_cosine && light.z() >= min_cosine;
+  return view.z() >= kMinCosine && light.z() >= kMinCosine;
 }
 
 Eigen::Vector3d half_vector(const Eigen::Vector3d& view, const Eigen::Vector3d& light) {
@@ -107,7 +107,7 @@ Eigen::Vector3d NdfBrdf::surface_normal(const SampleQuery& query) const {
 /// A direction towards the light, or one below the horizon where there is none.
 Eigen::Vector3d NdfBrdf::draw(const SampleQuery& query) const {
   const Eigen::Vector3d& view = query.from.view;
-  if (view.z() < min_cosine) return -Eigen::Vector3d::UnitZ();
+  if (view.z() < kMinCosine) return -Eigen::Vector3d::UnitZ();
   const double choice = random(query, kChoice);
   if (choice < cosine_share_) return cosine_direction(random(query, kDirectionX), random(query, kDirectionY));
   const Eigen::Vector3d half =
@@ -139,7 +139,7 @@ std::vector<Albedo> NdfBrdf::energy(const std::vector<ViewQuery>& queries) {
   std::vector<Albedo> albedos(queries.size());
   for (std::size_t n = 0; n < queries.size(); ++n) {
     std::vector<SampleQuery> samples(draws);
-    for (std::size_t k = 0; k < draws; ++k) samples[k] = {queries[n], synthesis::random_bits(0, 0, k)};
+    for (std::size_t k = 0; k < draws; ++k) samples[k] = {queries[n], random_bits(0, 0, k)};
     double sum = 0;
     for (const BrdfSample& drawn : sample(samples)) sum += drawn.weight_single;
     const double single = sum / draws;

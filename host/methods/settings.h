@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "host/base/glints_description.h"
+#include "host/base/words.h"
 
 namespace mica::host {
 
@@ -42,11 +44,13 @@ class SettingVisitor {
   /// A file of a table of files. Jobs have them.
   virtual void file(const char* /*table*/, const char* /*key*/, const char*, std::string&) {}
 
+  /// One of the words of an enum.
   template <typename Enum>
-  void choice(const char* key, const char* help, Enum& value, const std::vector<std::string>& words) {
-    int chosen = static_cast<int>(value);
+  void choice(const char* key, const char* help, Enum& value) {
+    const std::vector<std::string> words = list_words<Enum>();
+    int chosen = static_cast<int>(std::find(words.begin(), words.end(), word_of(value)) - words.begin());
     word(key, help, chosen, words);
-    value = static_cast<Enum>(chosen);
+    value = Words<Enum>::all[chosen].value;
   }
 };
 

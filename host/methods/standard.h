@@ -25,7 +25,7 @@ struct Promise {
   double relative = 1e-4, of_peak = kPeakBound;
 };
 
-/// Of the intrinsic Gaussian of a query.
+/// The peak of a query's intrinsic Gaussian.
 inline double lobe_peak(const Query& query) {
   return 1 / (2 * kPi * query.roughness * query.roughness);
 }

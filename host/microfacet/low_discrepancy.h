@@ -11,7 +11,7 @@ namespace mica::host {
 /// uniform. Kollig and Keller, "Efficient Multidimensional Sampling" (2002), sec. 2.2.
 inline Eigen::Vector2d low_discrepancy_point(std::uint32_t index, std::uint64_t scramble) {
   std::uint32_t x = static_cast<std::uint32_t>(scramble), y = static_cast<std::uint32_t>(scramble >> 32);
-  std::uint32_t column_x = 1u << 31, column_y = 1u << 31;  // of the generator matrices
+  std::uint32_t column_x = 1u << 31, column_y = 1u << 31;  // columns of the generator matrices
   for (; index; index >>= 1) {
     if (index & 1) x ^= column_x, y ^= column_y;
     column_x >>= 1;

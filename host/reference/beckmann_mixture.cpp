@@ -81,8 +81,7 @@ SlopeLobe fit(const Surface& surface, int elements, long a, long b) {
     return lobe;
   }
   const std::vector<Sample> across = samples_of(a, 1.0 / elements);
-  std::vector<Eigen::Vector2d> row(across.back().cell - across.front().cell +
-                                   2);                            // of the map at a point's v
+  std::vector<Eigen::Vector2d> row(across.back().cell - across.front().cell + 2);  // the map at a point's v
   double weights = 0, m1 = 0, m2 = 0, m11 = 0, m12 = 0, m22 = 0;  // sums of products of the slope's parts
   for (const Sample& v : samples_of(b, 1.0 / elements)) {
     for (std::size_t n = 0; n < row.size(); ++n) {

@@ -39,7 +39,7 @@ class BeckmannMixture {
 
  private:
   long width_, height_;  // elements
-  double corner_;        // of element (0, 0), in elements
+  double corner_;        // where element (0, 0) is, in elements
   std::vector<SlopeLobe> fitted_;
 };
 

@@ -7,14 +7,13 @@
 
 namespace mica::host::reference {
 
-BestFirstSearch::BestFirstSearch(const CellGrid& grid, const NormalPyramid& pyramid,
-                                 const TriangleRules& rules, const QueryFrame& frame,
-                                 RunningIntegral* integral)
-    : grid_(grid),
+BestFirstSearch::BestFirstSearch(const CellMap& map, const NormalPyramid& pyramid, const TriangleRules& rules,
+                                 const QueryFrame& frame, RunningIntegral* integral)
+    : map_(map),
       pyramid_(pyramid),
       frame_(frame),
       integral_(*integral),
-      block_integrator_(grid, rules, frame, integral) {}
+      block_integrator_(map, rules, frame, integral) {}
 
 void BestFirstSearch::run() {
   push_periods();
@@ -34,9 +33,8 @@ void BestFirstSearch::push_periods() {
   const int top = pyramid_.top_level();
   if (frame_.covers_evenly()) return push(top, 0, 0, 0, 0);
   const Eigen::Matrix2d& cov = frame_.cov_texels();
-  const Eigen::Vector2d period =
-      grid_.corner_texels(grid_.columns(), grid_.rows()) - grid_.corner_texels(0, 0);
-  const Eigen::Vector2d mean = frame_.mean_texels() - grid_.corner_texels(0, 0);
+  const Eigen::Vector2d period = map_.corner_texels(map_.columns(), map_.rows()) - map_.corner_texels(0, 0);
+  const Eigen::Vector2d mean = frame_.mean_texels() - map_.corner_texels(0, 0);
   const double radius = std::sqrt(RunningIntegral::largest_q);
   const double reach_y = radius * std::sqrt(cov(1, 1));
   const double lean = cov(0, 1) / cov(1, 1);
@@ -59,7 +57,7 @@ void BestFirstSearch::push(int level, int i, int j, long period_x, long period_y
   const CellRange cells = cells_of(level, i, j, period_x, period_y);
   const double nearest_squared = lower_bound(pyramid_.bounds(level, i, j), cells);
   const double count = static_cast<double>((cells.end_i - cells.begin_i) * (cells.end_j - cells.begin_j));
-  const double area = count * grid_.cell_texels() * grid_.cell_texels();
+  const double area = count * map_.cell_texels() * map_.cell_texels();
   const double urgency = nearest_squared - 2 * std::log(std::max(1.0, area / frame_.effective_area()));
   queue_.push_back({nearest_squared, area, urgency, level, i, j, period_x, period_y});
   std::push_heap(queue_.begin(), queue_.end(), is_later);
@@ -83,16 +81,15 @@ void BestFirstSearch::open(const Node& node) {
 
 BestFirstSearch::CellRange BestFirstSearch::cells_of(int level, int i, int j, long period_x,
                                                      long period_y) const {
-  const long cells = static_cast<long>(CellGrid::block_cells) << level;
-  const long first_i = period_x * grid_.columns(), first_j = period_y * grid_.rows();
-  return {first_i + i * cells, first_j + j * cells,
-          first_i + std::min<long>((i + 1) * cells, grid_.columns()),
-          first_j + std::min<long>((j + 1) * cells, grid_.rows())};
+  const long cells = static_cast<long>(CellMap::block_cells) << level;
+  const long first_i = period_x * map_.columns(), first_j = period_y * map_.rows();
+  return {first_i + i * cells, first_j + j * cells, first_i + std::min<long>((i + 1) * cells, map_.columns()),
+          first_j + std::min<long>((j + 1) * cells, map_.rows())};
 }
 
 double BestFirstSearch::lower_bound(const NormalBox& box, const CellRange& cells) const {
   const Eigen::Vector2d low = frame_.whiten_normal(box.low), high = frame_.whiten_normal(box.high);
-  const auto corner = [&](long i, long j) { return frame_.whiten_position(grid_.corner_texels(i, j)); };
+  const auto corner = [&](long i, long j) { return frame_.whiten_position(map_.corner_texels(i, j)); };
   const Eigen::Vector2d corners[4] = {corner(cells.begin_i, cells.begin_j),
                                       corner(cells.end_i, cells.begin_j), corner(cells.end_i, cells.end_j),
                                       corner(cells.begin_i, cells.end_j)};

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "host/reference/block_integrator.h"
-#include "host/reference/cell_grid.h"
+#include "host/reference/cell_map.h"
 #include "host/reference/normal_pyramid.h"
 #include "host/reference/query_frame.h"
 #include "host/reference/running_integral.h"
@@ -15,7 +15,7 @@ namespace mica::host::reference {
 /// cannot matter.
 class BestFirstSearch {
  public:
-  BestFirstSearch(const CellGrid& grid, const NormalPyramid& pyramid, const TriangleRules& rules,
+  BestFirstSearch(const CellMap& map, const NormalPyramid& pyramid, const TriangleRules& rules,
                   const QueryFrame& frame, RunningIntegral* integral);
 
   void run();
@@ -41,7 +41,7 @@ class BestFirstSearch {
   CellRange cells_of(int level, int i, int j, long period_x, long period_y) const;
   double lower_bound(const NormalBox& box, const CellRange& cells) const;
 
-  const CellGrid& grid_;
+  const CellMap& map_;
   const NormalPyramid& pyramid_;
   const QueryFrame& frame_;
   RunningIntegral& integral_;

@@ -7,10 +7,10 @@
 
 #include <cmath>
 
+#include "host/base/random.h"
 #include "host/base/symmetric_matrix.h"
 #include "host/reference/query_frame.h"
 #include "host/surface/interpolate.h"
-#include "host/surface/random.h"
 #include "mica/error.h"
 
 namespace mica::host::reference {
@@ -19,8 +19,8 @@ namespace {
 /// Two independent standard normal numbers, [Box and Muller 1958].
 Eigen::Vector2d standard_normals(std::uint64_t seed, std::uint64_t stream, std::uint64_t index) {
   constexpr double two_pi = 6.28318530717958647692;
-  const double radius = std::sqrt(-2 * std::log1p(-synthesis::random_unit(seed, 2 * stream, index)));
-  const double angle = two_pi * synthesis::random_unit(seed, 2 * stream + 1, index);
+  const double radius = std::sqrt(-2 * std::log1p(-random_unit(seed, 2 * stream, index)));
+  const double angle = two_pi * random_unit(seed, 2 * stream + 1, index);
   return {radius * std::cos(angle), radius * std::sin(angle)};
 }
 

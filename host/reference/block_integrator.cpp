@@ -13,7 +13,7 @@ void BlockIntegrator::integrate(int block_i, int block_j, long period_x, long pe
   if (!integral_.found_something()) promise_something();
   triangles_.choose_rules(rules_);
 
-  const double area = 0.5 * grid_.cell_texels() * grid_.cell_texels();
+  const double area = 0.5 * map_.cell_texels() * map_.cell_texels();
   for (int t = 0; t < triangles_.count; ++t) {
     if (triangles_.rule[t] < rules_.count()) {
       const double value = area * rules_.rule(triangles_.rule[t]).mean(triangles_.gram_of(t));
@@ -27,14 +27,14 @@ void BlockIntegrator::integrate(int block_i, int block_j, long period_x, long pe
 
 /// Whitens the corners of all cells of a block.
 void BlockIntegrator::collect_cells(int block_i, int block_j, long period_x, long period_y) {
-  constexpr int pitch = CellGrid::block_cells + 1;
-  const CellGrid::Block block = grid_.block(block_i, block_j);
-  const long first_i = period_x * grid_.columns() + block_i * CellGrid::block_cells;
-  const long first_j = period_y * grid_.rows() + block_j * CellGrid::block_cells;
+  constexpr int pitch = CellMap::block_cells + 1;
+  const CellMap::Block block = map_.block(block_i, block_j);
+  const long first_i = period_x * map_.columns() + block_i * CellMap::block_cells;
+  const long first_j = period_y * map_.rows() + block_j * CellMap::block_cells;
   std::array<Eigen::Vector2d, pitch * pitch> positions;
   for (int j = 0; j <= block.rows; ++j) {
     for (int i = 0; i <= block.columns; ++i) {
-      positions[j * pitch + i] = frame_.whiten_position(grid_.corner_texels(first_i + i, first_j + j));
+      positions[j * pitch + i] = frame_.whiten_position(map_.corner_texels(first_i + i, first_j + j));
     }
   }
 
@@ -58,7 +58,7 @@ void BlockIntegrator::collect_cells(int block_i, int block_j, long period_x, lon
 
 /// Keeps the triangles of the cells that may matter.
 void BlockIntegrator::collect_triangles() {
-  const double cut = integral_.cut(), cell_area = grid_.cell_texels() * grid_.cell_texels();
+  const double cut = integral_.cut(), cell_area = map_.cell_texels() * map_.cell_texels();
   triangles_.count = 0;
   for (int cell = 0; cell < cells_.count; ++cell) {
     const double nearest = cells_.nearest_squared[cell];
@@ -73,7 +73,7 @@ void BlockIntegrator::collect_triangles() {
 /// The integral has a lower bound before it has a value: shrink a triangle towards its nearest point p by t;
 /// it still lies within, and |w| <= |p| + t diameter on it.
 void BlockIntegrator::promise_something() {
-  const double area = 0.5 * grid_.cell_texels() * grid_.cell_texels();
+  const double area = 0.5 * map_.cell_texels() * map_.cell_texels();
   for (int t = 0; t < triangles_.count; ++t) {
     const PlanarTriangle planar = flatten(triangles_.vertices_of(t));
     const double nearest = planar.nearest_squared();

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "host/reference/cell_grid.h"
+#include "host/reference/cell_map.h"
 #include "host/reference/query_frame.h"
 #include "host/reference/running_integral.h"
 #include "host/reference/triangle_batch.h"
@@ -10,9 +10,9 @@ namespace mica::host::reference {
 /// Adds the integral over blocks of cells to that of one query. Keeps references to its arguments.
 class BlockIntegrator {
  public:
-  BlockIntegrator(const CellGrid& grid, const TriangleRules& rules, const QueryFrame& frame,
+  BlockIntegrator(const CellMap& map, const TriangleRules& rules, const QueryFrame& frame,
                   RunningIntegral* integral)
-      : grid_(grid), rules_(rules), frame_(frame), integral_(*integral) {}
+      : map_(map), rules_(rules), frame_(frame), integral_(*integral) {}
 
   /// @param block_i, block_j a block of the map
   /// @param period_x, period_y which of its repetitions in the plane
@@ -23,7 +23,7 @@ class BlockIntegrator {
   void collect_triangles();
   void promise_something();
 
-  const CellGrid& grid_;
+  const CellMap& map_;
   const TriangleRules& rules_;
   const QueryFrame& frame_;
   RunningIntegral& integral_;

@@ -50,7 +50,7 @@ double mirrored(const Eigen::Vector3d& o, const Eigen::Vector3d& i, double facet
   if (!(o.z() > 0 && i.z() > 0)) return 0;
   const Eigen::Vector3d half = (o + i).normalized();
   const Cavity cavity(half.head<2>());
-  // Of normals on the disk to directions i: the disk is the hemisphere foreshortened by h.g, and a mirror
+  // From normals on the disk to directions i: the disk is the hemisphere foreshortened by h.g, and a mirror
   // that turns by an angle turns its image by twice as much.
   const double density = facets * half.z() / (4 * o.dot(half));
   return density * cavity.intersection_probability(o) * cavity.masking(i);
@@ -80,7 +80,7 @@ std::vector<CavityMixture::Seed> CavityMixture::seeds(const Footprint& footprint
                                      h * h / (8 * std::log(2.0)) * Eigen::Matrix2d::Identity();  // sigma_h^2
   const Eigen::Matrix2d precision = covariance.inverse();
   const bool constant_texels = surface_.interpolation() == Interpolation::nearest;
-  const double first = constant_texels ? 0.5 * h : 0.5;  // of the seeds' coordinates, in texels
+  const double first = constant_texels ? 0.5 * h : 0.5;  // the first seed's coordinates, in texels
   const Eigen::Vector2d mean = texels * footprint.mean_uv;
   const Eigen::Vector2d extent = reach * covariance.diagonal().cwiseSqrt();
   const auto low = [&](int axis) { return std::lround(std::floor((mean[axis] - extent[axis] - first) / h)); };

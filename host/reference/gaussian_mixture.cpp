@@ -29,7 +29,7 @@ double GaussianMixture::evaluate(const Query& query) const {
   const Eigen::DiagonalMatrix<double, 2> texels(surface_.width(), surface_.height());
   const Eigen::Matrix2d footprint = texels * query.footprint.cov_uv * texels;
   const Eigen::Matrix2d both = footprint + kernel;
-  const Eigen::Matrix2d pull = kernel * both.inverse();  // of the slice's mean towards the footprint's
+  const Eigen::Matrix2d pull = kernel * both.inverse();  // pulls the slice's mean towards the footprint's
   const Eigen::Matrix2d sliced = pull * footprint;       // covariance of the position, given both
   const bool constant_texels = surface_.interpolation() == Interpolation::nearest;
   const double corner = constant_texels ? 0 : 0.5;  // texel (0, 0) begins there, or its quad

@@ -8,8 +8,8 @@
 namespace mica::host::reference {
 namespace {
 
-constexpr double two_pi = 6.28318530717958647692;
-constexpr double square_root_of_2 = 1.41421356237309504880;
+constexpr double kTwoPi = 6.28318530717958647692;
+constexpr double kSquareRootOf2 = 1.41421356237309504880;
 
 double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
@@ -19,7 +19,7 @@ double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
 double owens_t_on_line(double h, double x) {
   constexpr double vanished = 8.6;  // the Gaussian's tail beyond is below 1e-17
   if (h > vanished) return 0;
-  if (std::abs(x) > vanished) return std::copysign(0.25 * std::erfc(h / square_root_of_2), x);
+  if (std::abs(x) > vanished) return std::copysign(0.25 * std::erfc(h / kSquareRootOf2), x);
   return boost::math::owens_t(h, x / h);
 }
 
@@ -30,7 +30,7 @@ double edge_probability(const Eigen::Vector2d& from, const Eigen::Vector2d& to) 
   const double h = std::abs(signed_distance);
   if (h == 0) return 0;  // also an edge of no length
   const double x0 = from.dot(direction), x1 = to.dot(direction);
-  const double angle = (std::atan2(x1, h) - std::atan2(x0, h)) / two_pi;
+  const double angle = (std::atan2(x1, h) - std::atan2(x0, h)) / kTwoPi;
   return std::copysign(angle - (owens_t_on_line(h, x1) - owens_t_on_line(h, x0)), signed_distance);
 }
 
@@ -113,7 +113,7 @@ void integrate_triangle(const std::array<Whitened, 3>& vertices, double area, co
   }
 
   constexpr double wide = 4;  // below, a few halvings cost less than Owen's T
-  const double density = area * two_pi * std::exp(-0.5 * planar.offset_squared) / planar.area();
+  const double density = area * kTwoPi * std::exp(-0.5 * planar.offset_squared) / planar.area();
   const double reach =
       std::max({planar.vertices[0].norm(), planar.vertices[1].norm(), planar.vertices[2].norm()});
   const double rounding = density * (1e-15 + 4e-16 * reach);

@@ -162,7 +162,7 @@ std::vector<double> GlintProcess::densities_of(const Query& query, int colors) c
   problem.position = to_cells * query.footprint.mean_uv;
   problem.covariance = to_cells * query.footprint.cov_uv * to_cells;
   problem.angle = to_disk(query.half_vector);
-  const double jacobian = std::sqrt(kPi / 4 * smooth);  // of lengths, Eq. 3
+  const double jacobian = std::sqrt(kPi / 4 * smooth);  // how lengths change, Eq. 3
   problem.sigma_angle = query.roughness * jacobian * Eigen::Vector2d(1 / root, root);
   problem.seed = seed, problem.share = share, problem.kept = kept;
 

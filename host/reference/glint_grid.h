@@ -11,11 +11,11 @@ namespace mica::host::reference {
 /// What is random about the glint of a cell; kernels/grid/glint_hash.h, written again.
 struct Glint {
   Eigen::Vector2d place, angle;  ///< in the cell, (0, 1)^2: on the surface, on the disk
-  double roulette;               ///< (0, 1): of its level
-  double presence;               ///< (0, 1): of its process
+  double roulette;               ///< (0, 1): whether it is on its level
+  double presence;               ///< (0, 1): whether its process has it
   double color;                  ///< (0, 1), whose part of the colours says which
 };
-/// Of the spatial cell (i, j) and the angular cell (k, l) of a level.
+/// The glint of the spatial cell (i, j) and the angular cell (k, l) of a level.
 Glint glint_of_cell(std::int64_t i, std::int64_t j, std::int64_t k, std::int64_t l, int level,
                     std::uint32_t seed);
 
@@ -27,10 +27,10 @@ struct GlintProcess {
   bool beckmann = false;                ///< else Trowbridge-Reitz
   double alpha_x = 0.3, alpha_y = 0.3;  ///< roughness
   double density = 1e6;                 ///< cells per unit area of uv
-  double stretch = 1;                   ///< of each glint along u
+  double stretch = 1;                   ///< how much longer each glint is along u
   std::uint32_t seed = 1;
-  double share = 1;  ///< of the light
-  double kept = 1;   ///< of the glints
+  double share = 1;  ///< share of the light
+  double kept = 1;   ///< share of the glints that are there
 
   /// Density of normals over the disk at the query's half vector.
   double density_of(const Query& query) const { return densities_of(query, 1).front(); }

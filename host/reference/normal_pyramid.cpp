@@ -6,12 +6,12 @@
 
 namespace mica::host::reference {
 
-NormalPyramid::NormalPyramid(const CellGrid& grid) {
-  const int columns = grid.block_columns(), rows = grid.block_rows();
+NormalPyramid::NormalPyramid(const CellMap& map) {
+  const int columns = map.block_columns(), rows = map.block_rows();
   levels_.push_back({columns, rows, std::vector<NormalBox>(static_cast<std::size_t>(columns) * rows)});
   tbb::parallel_for(0, rows, [&](int j) {
     for (int i = 0; i < columns; ++i) {
-      levels_[0].boxes[static_cast<std::size_t>(j) * columns + i] = grid.block_bounds(i, j);
+      levels_[0].boxes[static_cast<std::size_t>(j) * columns + i] = map.block_bounds(i, j);
     }
   });
   while (levels_.back().boxes.size() > 1) {

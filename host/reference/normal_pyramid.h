@@ -2,15 +2,15 @@
 
 #include <vector>
 
-#include "host/reference/cell_grid.h"
+#include "host/reference/cell_map.h"
 
 namespace mica::host::reference {
 
-/// Bounds of the normals over one period of a cell grid, block by block, then over 2x2 nodes of the level
+/// Bounds of the normals over one period of a cell map, block by block, then over 2x2 nodes of the level
 /// below, up to a single node.
 class NormalPyramid {
  public:
-  explicit NormalPyramid(const CellGrid& grid);
+  explicit NormalPyramid(const CellMap& map);
 
   int top_level() const { return static_cast<int>(levels_.size()) - 1; }
   int columns(int level) const { return levels_[level].columns; }

@@ -13,14 +13,14 @@ namespace mica::host::reference {
 class Oracle::Implementation {
  public:
   Implementation(const Surface& surface, double tolerance)
-      : surface_(surface), tolerance_(tolerance), grid_(surface), pyramid_(grid_) {}
+      : surface_(surface), tolerance_(tolerance), map_(surface), pyramid_(map_) {}
 
   QueryFrame frame_of(const Query& query) const { return QueryFrame(surface_, query, 0.1 * tolerance_); }
 
   OracleResult evaluate(const Query& query) const {
     const QueryFrame frame = frame_of(query);
     RunningIntegral integral(tolerance_, frame.effective_area());
-    BestFirstSearch(grid_, pyramid_, rules_, frame, &integral).run();
+    BestFirstSearch(map_, pyramid_, rules_, frame, &integral).run();
     const double density = frame.scale() * integral.sum();
     // What is farther than the largest q adds less than 200 effective areas of exp(-q/2).
     const double vanished =
@@ -34,7 +34,7 @@ class Oracle::Implementation {
  private:
   const Surface& surface_;
   double tolerance_;
-  CellGrid grid_;
+  CellMap map_;
   NormalPyramid pyramid_;
   TriangleRules rules_;
 };

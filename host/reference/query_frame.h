@@ -42,7 +42,7 @@ class QueryFrame {
   Eigen::Vector2d mean_texels_, half_vector_;
   Eigen::Matrix2d cov_texels_;
   double inverse_roughness_;
-  double inverse_x_, shear_, inverse_y_;  ///< of the Cholesky factor of cov_texels
+  double inverse_x_, shear_, inverse_y_;  ///< entries of the inverse of cov_texels' Cholesky factor
   bool covers_evenly_;
   double effective_area_, scale_, rounding_;
 };

@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "host/reference/cell_grid.h"
+#include "host/reference/cell_map.h"
 #include "host/reference/query_frame.h"
 #include "host/reference/triangle_rule.h"
 
@@ -11,7 +11,7 @@ namespace mica::host::reference {
 /// The whitened corners of a block's cells, component by component so that loops over cells become vector
 /// code.
 struct CellBatch {
-  static constexpr int capacity = CellGrid::block_cells * CellGrid::block_cells;
+  static constexpr int capacity = CellMap::block_cells * CellMap::block_cells;
 
   int count = 0;
   double corners[4][4][capacity];    ///< [corner (0,0), (1,0), (0,1), (1,1)][component][cell]
@@ -40,7 +40,7 @@ struct TriangleBatch {
   std::array<Whitened, 3> vertices_of(int triangle) const;
 };
 
-/// The same choice for a single triangle.
+/// The rule that choose_rules takes, for a single triangle.
 int choose_rule(const TriangleRules& rules, const Gram& gram, int digits);
 Gram gram_of(const std::array<Whitened, 3>& vertices);
 

@@ -11,9 +11,9 @@
 namespace mica::host::reference {
 namespace {
 
-constexpr int pack_points = 8;
-constexpr int pack_size = 7 * pack_points;
-constexpr double error_factor = 4;  ///< in front of the bound at difficulty()
+constexpr int kPackPoints = 8;
+constexpr int kPackSize = 7 * kPackPoints;
+constexpr double kErrorFactor = 4;  ///< in front of the bound at difficulty()
 
 struct Rule1D {
   Eigen::ArrayXd nodes, weights;  ///< on [0, 1]; the weights add up to 1
@@ -57,12 +57,12 @@ inline double exp_of_negative(double x) {
 
 MICA_FOR_SEVERAL_CPUS
 double weighted_sum(const double* packs, const double* end, const double* exponent) {
-  double sums[pack_points] = {};
-  for (; packs != end; packs += pack_size) {
-    for (int i = 0; i < pack_points; ++i) {
+  double sums[kPackPoints] = {};
+  for (; packs != end; packs += kPackSize) {
+    for (int i = 0; i < kPackPoints; ++i) {
       double x = 0;
-      for (int k = 0; k < 6; ++k) x += exponent[k] * packs[k * pack_points + i];
-      sums[i] += packs[6 * pack_points + i] * exp_of_negative(x);
+      for (int k = 0; k < 6; ++k) x += exponent[k] * packs[k * kPackPoints + i];
+      sums[i] += packs[6 * kPackPoints + i] * exp_of_negative(x);
     }
   }
   return ((sums[0] + sums[1]) + (sums[2] + sums[3])) + ((sums[4] + sums[5]) + (sums[6] + sums[7]));
@@ -73,8 +73,8 @@ double weighted_sum(const double* packs, const double* end, const double* expone
 TriangleRule::TriangleRule(int points_a_side) : points_a_side_(points_a_side) {
   const int n = points_a_side;
   const Rule1D outward = gauss_rule(n, 1), along = gauss_rule(n, 0);
-  const int packs = (n * n + pack_points - 1) / pack_points;
-  packs_.assign(packs * pack_size, 0.0);
+  const int packs = (n * n + kPackPoints - 1) / kPackPoints;
+  packs_.assign(packs * kPackSize, 0.0);
   for (int p = 0; p < n * n; ++p) {
     const double a = outward.nodes[p / n], b = along.nodes[p % n];
     const double l0 = 1 - a, l1 = a * (1 - b), l2 = a * b;
@@ -85,8 +85,8 @@ TriangleRule::TriangleRule(int points_a_side) : points_a_side_(points_a_side) {
                               2 * l0 * l2,
                               2 * l1 * l2,
                               outward.weights[p / n] * along.weights[p % n]};
-    double* pack = packs_.data() + p / pack_points * pack_size + p % pack_points;
-    for (int k = 0; k < 7; ++k) pack[k * pack_points] = values[k];
+    double* pack = packs_.data() + p / kPackPoints * kPackSize + p % kPackPoints;
+    for (int k = 0; k < 7; ++k) pack[k * kPackPoints] = values[k];
   }
 }
 
@@ -102,7 +102,7 @@ TriangleRules::TriangleRules() {
     rules_.emplace_back(n);
     limits_.emplace_back();
     for (int digits = 0; digits <= max_digits; ++digits) {
-      limits_.back()[digits] = 8 * n * std::pow(tolerances_[digits] / error_factor, 1.0 / (2 * n));
+      limits_.back()[digits] = 8 * n * std::pow(tolerances_[digits] / kErrorFactor, 1.0 / (2 * n));
     }
   }
 }

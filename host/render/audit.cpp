@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/base/error_norms.h"
+#include "host/base/random.h"
 #include "host/reference/glint_grid.h"
 #include "host/reference/oracle.h"
 
@@ -10,13 +12,6 @@ namespace mica::host {
 namespace {
 
 constexpr double kOracleTolerance = 1e-7;  // a thousandth of what is promised
-
-/// SplitMix64's finaliser: a bijection whose bits all depend on all of `x`.
-std::uint64_t mix(std::uint64_t x) {
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-  return x ^ (x >> 31);
-}
 
 bool lower_key(const AuditSample& a, const AuditSample& b) {
   return a.key < b.key;
@@ -27,7 +22,7 @@ bool lower_key(const AuditSample& a, const AuditSample& b) {
 void AuditSampler::offer(std::uint64_t pixel, std::uint64_t ordinal, const Query& query, float density,
                          int evaluator, const GlintPoint& glints) {
   if (samples_ == 0) return;
-  const std::uint64_t key = mix(mix(mix(seed_ + 0x9e3779b97f4a7c15u) ^ pixel) ^ ordinal);
+  const std::uint64_t key = scramble_bits(scramble_bits(mix_bits(seed_) ^ pixel) ^ ordinal);
   if (heap_.size() == samples_) {
     if (key >= heap_.front().key) return;
     std::pop_heap(heap_.begin(), heap_.end(), lower_key);
@@ -67,16 +62,15 @@ AuditResult audit(const std::vector<AuditSample>& samples, const std::vector<con
   }
 
   const double peak = *std::max_element(reference.begin(), reference.end());
-  double squares = 0, reference_squares = 0;
+  RelativeL2 l2;
   std::vector<double> errors;
   for (std::size_t n = 0; n < samples.size(); ++n) {
     const double difference = std::abs(samples[n].density - reference[n]);
-    squares += difference * difference;
-    reference_squares += reference[n] * reference[n];
+    l2.add(samples[n].density, reference[n]);
     errors.push_back(difference == 0 ? 0 : difference / (reference[n] + 0.01 * peak));
   }
   std::sort(errors.begin(), errors.end());
-  result.relative_l2 = reference_squares > 0 ? std::sqrt(squares / reference_squares) : 0;
+  result.relative_l2 = l2.has_reference() ? l2.value() : 0;
   result.percentile_99 = errors[static_cast<std::size_t>(0.99 * static_cast<double>(errors.size() - 1))];
   result.maximum = errors.back();
   return result;

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
+#include "host/base/random.h"
 #include "host/render/gathered_light.h"
-#include "host/surface/random.h"
 
 namespace mica::host {
 namespace {
@@ -39,7 +39,7 @@ std::size_t ask(PatchBrdf& brdf, int samples, bool draws, const std::vector<Gath
 /// What the random numbers of a frame are a hash of; at frame 0, where pictures without frames are, the seed.
 std::uint64_t seed_of(const BuiltJob& built) {
   const auto frame = static_cast<std::uint64_t>(built.frame());
-  return frame == 0 ? built.job().seed : synthesis::random_bits(built.job().seed, kFrames, frame);
+  return frame == 0 ? built.job().seed : random_bits(built.job().seed, kFrames, frame);
 }
 
 /// Gathers at points [first, last), and adds what they gather to `radiance`, a pixel.
@@ -53,7 +53,7 @@ std::size_t gather(const BuiltJob& built, const TracedRows& rows, std::size_t fi
   for (std::size_t n = first; n < last; ++n) {
     const LitPoint& point = rows.points[n];
     const std::uint64_t pixel = static_cast<std::uint64_t>(rows.first_row) * image.width + point.pixel;
-    points.emplace_back(context, point, synthesis::random_bits(seed, pixel, point.subpixel));
+    points.emplace_back(context, point, random_bits(seed, pixel, point.subpixel));
   }
   tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t n) { points[n].draw(); });
 

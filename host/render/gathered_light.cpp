@@ -2,10 +2,11 @@
 
 #include <limits>
 
+#include "host/base/random.h"
+#include "host/microfacet/horizon.h"
 #include "host/microfacet/low_discrepancy.h"
 #include "host/render/surface_light.h"
 #include "host/scene/shading.h"
-#include "host/surface/random.h"
 
 namespace mica::host {
 namespace {
@@ -41,7 +42,7 @@ GatheredLight::GatheredLight(const GatheringContext& context, const LitPoint& po
       tint_(mean_color(material_)) {}
 
 bool GatheredLight::faces(const Eigen::Vector3d& world) const {
-  return world.dot(point_.frame.z) >= min_cosine && world.dot(point_.frame.face_normal) >= min_cosine;
+  return world.dot(point_.frame.z) >= kMinCosine && world.dot(point_.frame.face_normal) >= kMinCosine;
 }
 
 /// Of one draw in the mean over the pixel.
@@ -78,7 +79,7 @@ void GatheredLight::draw() {
 
 void GatheredLight::draw_light(std::uint32_t n) {
   const Environment& environment = context_.scene.environment();
-  const std::uint64_t scramble = synthesis::random_bits(key_, kLightScramble, 0);
+  const std::uint64_t scramble = random_bits(key_, kLightScramble, 0);
   const Eigen::Vector3d world = environment.sample(low_discrepancy_point(n, scramble));
   const LightDraw draw{point_.frame.to_local(world), seen_radiance(world), environment.pdf(world)};
   if (draw.radiance.isZero(0) || !(draw.pdf > 0)) return;
@@ -89,13 +90,13 @@ void GatheredLight::draw_light(std::uint32_t n) {
 }
 
 void GatheredLight::draw_smooth(std::uint32_t n) {
-  const std::uint64_t scramble = synthesis::random_bits(key_, kSmoothScramble, 0);
+  const std::uint64_t scramble = random_bits(key_, kSmoothScramble, 0);
   const Eigen::Vector2d point = low_discrepancy_point(n, scramble);
-  const double lobe = synthesis::random_unit(key_, kSmoothLobe, n);
+  const double lobe = random_unit(key_, kSmoothLobe, n);
   const Eigen::Vector3d local = smooth_.sample(view_, {point.x(), point.y(), lobe});
   const double pdf = smooth_.pdf(view_, local);
   if (!(pdf > 0)) return;
-  const Color radiance = drawn_radiance(local, pdf, synthesis::random_bits(key_, kSmoothPath, n));
+  const Color radiance = drawn_radiance(local, pdf, random_bits(key_, kSmoothPath, n));
   sum_ += smooth_.value(view_, local).cwiseProduct(radiance) / pdf;
 }
 
@@ -104,8 +105,7 @@ BrdfQuery GatheredLight::query(const LightDraw& draw) const {
 }
 
 SampleQuery GatheredLight::sample_query(std::size_t n) const {
-  return {{point_.footprint, crossing_.view_below(), material_.roughness},
-          synthesis::random_bits(key_, kBrdfKey, n)};
+  return {{point_.footprint, crossing_.view_below(), material_.roughness}, random_bits(key_, kBrdfKey, n)};
 }
 
 void GatheredLight::add(const LightDraw& draw, const BrdfValue& value) {
@@ -119,10 +119,9 @@ void GatheredLight::add(const LightDraw& draw, const BrdfValue& value) {
 void GatheredLight::add(const BrdfSample& sample, std::size_t n) {
   if (!(sample.pdf > 0)) return;
   const Eigen::Vector3d below = sample.light.cast<double>(), local = crossing_.above(below);
-  if (local.z() < min_cosine) return;
+  if (local.z() < kMinCosine) return;
   const double density_scale = crossing_.density_scale(local);
-  const Color radiance =
-      drawn_radiance(local, sample.pdf * density_scale, synthesis::random_bits(key_, kBrdfPath, n));
+  const Color radiance = drawn_radiance(local, sample.pdf * density_scale, random_bits(key_, kBrdfPath, n));
   if (radiance.isZero(0)) return;
   const BounceFresnel fresnel(material_.specular, crossing_.view_below(), below);
   const Color weight = sample.weight_single * fresnel.single + sample.weight_multiple * fresnel.multiple;

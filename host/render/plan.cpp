@@ -16,18 +16,6 @@ namespace {
 
 constexpr int kBatchesInFlight = 2;  // one on the device while the next is traced
 
-const char* name_of(Interpolation interpolation) {
-  switch (interpolation) {
-    case Interpolation::nearest:
-      return "nearest";
-    case Interpolation::bilinear:
-      return "bilinear";
-    case Interpolation::bicubic:
-      return "bicubic";
-  }
-  return "";
-}
-
 void check_gathering(const MaterialDescription& material, const Method& method) {
   const MethodSettings::Problem problem = method.gathering_problem(*material.settings);
   if (!problem.message.empty())
@@ -196,7 +184,7 @@ std::string describe(const Plan& plan) {
       continue;
     }
     text += fmt::format("{} on surface {} ({} x {} texels, {}) for {}: {:.1f} MiB on the device, kernel {}\n",
-                        e.evaluator, e.surface, e.width, e.height, name_of(e.interpolation),
+                        e.evaluator, e.surface, e.width, e.height, word_of(e.interpolation),
                         fmt::join(e.materials, ", "), mebibytes(e.device_bytes), e.kernel);
   }
   if (plan.gathers_light)

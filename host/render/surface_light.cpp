@@ -2,8 +2,9 @@
 
 #include <limits>
 
+#include "host/base/random.h"
+#include "host/microfacet/horizon.h"
 #include "host/scene/smooth_material.h"
-#include "host/surface/random.h"
 
 namespace mica::host {
 namespace {
@@ -17,7 +18,7 @@ struct Vertex {
   SmoothMaterial material;
 
   bool sees(const Eigen::Vector3d& world, double distance) const {
-    return world.dot(frame.z) >= min_cosine && world.dot(frame.face_normal) >= min_cosine &&
+    return world.dot(frame.z) >= kMinCosine && world.dot(frame.face_normal) >= kMinCosine &&
            !scene.geometry().occluded(hit, world, distance);
   }
 };
@@ -59,11 +60,11 @@ Color surface_light(const Scene& scene, Ray ray, int bounces, std::uint64_t key)
     }
     if (bounce == bounces) break;
     const auto random = [&](std::uint64_t dimension) {
-      return synthesis::random_unit(key, static_cast<std::uint64_t>(bounce), dimension);
+      return random_unit(key, static_cast<std::uint64_t>(bounce), dimension);
     };
     const Eigen::Vector3d to_eye = -ray.direction.normalized();
     const TangentFrame frame = tangent_frame(*hit, to_eye);
-    if (frame.face_normal.dot(to_eye) < min_cosine) break;
+    if (frame.face_normal.dot(to_eye) < kMinCosine) break;
     const std::uint32_t material = scene.material_of(*hit);
     const Vertex vertex{
         scene, *hit, frame, frame.to_local(to_eye),
@@ -75,7 +76,7 @@ Color surface_light(const Scene& scene, Ray ray, int bounces, std::uint64_t key)
     const Eigen::Vector3d next = vertex.material.sample(vertex.view, {random(2), random(3), random(4)});
     pdf = vertex.material.pdf(vertex.view, next);
     const Eigen::Vector3d world = frame.to_world(next);
-    if (!(pdf > 0) || world.dot(frame.face_normal) < min_cosine) break;
+    if (!(pdf > 0) || world.dot(frame.face_normal) < kMinCosine) break;
     throughput = throughput.cwiseProduct(vertex.material.value(vertex.view, next)) / pdf;
     if (throughput.isZero(0)) break;
     ray = ray_from(*hit, world);

@@ -17,13 +17,13 @@ std::string plan_json(const Job& job, const Plan& plan, const std::optional<Esti
 /// What was done to render a job: plan, bytes, seconds by phase, queries/s, audit; JSON text.
 std::string render_json(const Job& job, const DeviceInfo& device, const RenderResult& result);
 
-/// Of a frame that failed, in the place of what was done.
+/// What stands for a frame that failed, in the place of what was done.
 std::string failure_json(int frame, const std::string& error);
 
 /// The texts of all frames, in order, as one.
 std::string frames_json(const std::vector<std::string>& frames);
 
-/// The same for people, a few lines.
+/// What was done, for people: a few lines.
 std::string render_summary(const DeviceInfo& device, const RenderResult& result);
 
 }  // namespace mica::host

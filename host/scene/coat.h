@@ -41,7 +41,7 @@ class CoatInterface {
 
  private:
   CoatDescription coat_;
-  double inner_reflectance_;  ///< of diffuse light from below
+  double inner_reflectance_;  ///< share of diffuse light from below that it sends back
 };
 
 }  // namespace mica::host

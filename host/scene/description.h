@@ -53,7 +53,7 @@ struct MaterialDescription {
   Fresnel specular = ColorFresnel{};
   Color diffuse{0, 0, 0};  ///< Lambertian albedo
   std::optional<CoatDescription> coat = {};
-  std::optional<GlintsDescription> glints = {};  ///< of a method that has no map
+  std::optional<GlintsDescription> glints = {};  ///< for methods that have no map
 };
 
 struct PlaneShape {  ///< square of the plane z = height, uv over its sides
@@ -132,7 +132,7 @@ using LightDescription = std::variant<PointLight, DirectionalLight, SphereLight,
 struct EnvironmentLight {
   std::string path;
   Color radiance{1, 1, 1};      ///< W/(m^2 sr); what the image is multiplied with
-  double rotation_degrees = 0;  ///< of the image about +z, from +x towards +y
+  double rotation_degrees = 0;  ///< turns the image about +z, from +x towards +y
 };
 
 /// What rays that hit nothing see: a colour, or a lat-long image when `path` is not empty.

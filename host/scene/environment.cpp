@@ -102,7 +102,7 @@ class Environment::Light {
 
  private:
   double cos_colatitude(int row) const { return std::cos(kPi * row / height_); }
-  /// Of one pixel.
+  /// The solid angle of one pixel of that row.
   double solid_angle(int row) const {
     return 2 * kPi / width_ * (cos_colatitude(row) - cos_colatitude(row + 1));
   }
@@ -116,7 +116,7 @@ class Environment::Light {
   Background image_;
   int width_ = 1, height_ = 1;
   PiecewiseConstant rows_;
-  std::vector<PiecewiseConstant> columns_;  // of each row
+  std::vector<PiecewiseConstant> columns_;  // one a row
 };
 
 Environment::Environment(const std::vector<EnvironmentLight>& lights) {

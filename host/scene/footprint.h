@@ -12,7 +12,7 @@ namespace mica::host {
 /// sec. 3.1.
 Eigen::Matrix<double, 3, 2> position_differentials(const CameraRay& ray, const Hit& hit);
 
-/// The same of the shape's uv.
+/// Change of the shape's uv per pixel to the right (first column) and down (second column).
 Eigen::Matrix2d uv_differentials(const CameraRay& ray, const Hit& hit);
 
 /// Covariance in uv^2 of a Gaussian pixel filter with standard deviation `sigma_pixels` pushed through `duv`.

@@ -11,11 +11,11 @@
 namespace mica::host {
 namespace {
 
-constexpr int fork_steps = 320, fork_steps_around = 128, tine_steps = 120, tine_steps_around = 64;
+constexpr int kForkSteps = 320, kForkStepsAround = 128, kTineSteps = 120, kTineStepsAround = 64;
 
 // Lengths in units of the fork's; x runs from the handle's end at -1/2 to the tips of the tines at 1/2.
-constexpr double fork_handle_end = 0.035, head_tip = 0.325, head_end = 0.02, tine_root = 0.27;
-constexpr double tine_spacing = 0.034, tine_half_width = 0.0098, tine_point = 0.012;
+constexpr double kForkHandleEnd = 0.035, kHeadTip = 0.325, kHeadEnd = 0.02, kTineRoot = 0.27;
+constexpr double kTineSpacing = 0.034, kTineHalfWidth = 0.0098, kTinePoint = 0.012;
 
 double round_off(double beyond, double length) {
   const double share = std::clamp(beyond / length, 0.0, 1.0);
@@ -39,9 +39,9 @@ struct Side {
 class Handle {
  public:
   LoftSection operator()(double q) const {
-    const double length = head_tip + 0.5, x = -0.5 + length * 0.5 * (1 - std::cos(kPi * q));
+    const double length = kHeadTip + 0.5, x = -0.5 + length * 0.5 * (1 - std::cos(kPi * q));
     const double ends =
-        round_off(fork_handle_end - 0.5 - x, fork_handle_end) * round_off(x - head_tip + head_end, head_end);
+        round_off(kForkHandleEnd - 0.5 - x, kForkHandleEnd) * round_off(x - kHeadTip + kHeadEnd, kHeadEnd);
     return {x, 0, width_.at(x) * ends, side_.height.at(x), 0.006 * hollow_.at(x), side_.thickness.at(x)};
   }
 
@@ -64,11 +64,11 @@ class Tine {
   explicit Tine(double middle) : middle_(middle) {}
 
   LoftSection operator()(double q) const {
-    const double length = 0.5 - tine_root, x = tine_root + length * 0.5 * (1 - std::cos(kPi * q));
+    const double length = 0.5 - kTineRoot, x = kTineRoot + length * 0.5 * (1 - std::cos(kPi * q));
     const double ends =
-        round_off(tine_root + tine_point - x, tine_point) * round_off(x - 0.5 + tine_point, tine_point);
+        round_off(kTineRoot + kTinePoint - x, kTinePoint) * round_off(x - 0.5 + kTinePoint, kTinePoint);
     // Inside the head a little thinner than it, so that both do not lie in one plane.
-    const double thickness = side_.thickness.at(x) * (x < head_tip - head_end ? 0.8 : 1.0);
+    const double thickness = side_.thickness.at(x) * (x < kHeadTip - kHeadEnd ? 0.8 : 1.0);
     const double share = middle_ / 0.061;
     return {
         x, middle_,  width_.at(x) * ends, side_.height.at(x) - 0.006 * hollow_.at(x) * (1 - share * share),
@@ -78,7 +78,7 @@ class Tine {
  private:
   double middle_;
   Side side_;
-  Curve width_{{{tine_root, tine_half_width}, {0.36, tine_half_width}, {0.5, 0.0055}}};
+  Curve width_{{{kTineRoot, kTineHalfWidth}, {0.36, kTineHalfWidth}, {0.5, 0.0055}}};
   Curve hollow_{{{0.33, 1}, {0.42, 0}}};
 };
 
@@ -88,9 +88,9 @@ TriangleMesh make_fork(const ForkShape& fork) {
   if (!(fork.center.allFinite() && std::isfinite(fork.size) && fork.size > 0))
     throw UsageError("fork: center must be finite and size positive");
   TriangleMesh mesh;
-  add_loft(Handle(), fork_steps, fork_steps_around, &mesh);
+  add_loft(Handle(), kForkSteps, kForkStepsAround, &mesh);
   for (const double tine : {-1.5, -0.5, 0.5, 1.5})
-    add_loft(Tine(tine * tine_spacing), tine_steps, tine_steps_around, &mesh);
+    add_loft(Tine(tine * kTineSpacing), kTineSteps, kTineStepsAround, &mesh);
   place_body(fork.center, fork.size, &mesh);
   return mesh;
 }

@@ -156,7 +156,7 @@ struct ExactHit {
 struct Prototype {
   Shape shape;
   GeometryHandle geometry;
-  SceneHandle scene;  ///< of this alone, once it stands somewhere else than described
+  SceneHandle scene;  ///< holds this shape alone, once it stands somewhere else than described
 };
 
 struct PlacedShape {
@@ -180,7 +180,7 @@ Ray ray_from(const Hit& hit, const Eigen::Vector3d& direction) {
 struct Geometry::Implementation {
   DeviceHandle device;
   SceneHandle scene;
-  std::vector<decltype(ShapeDescription::geometry)> descriptions;  ///< of the prototypes
+  std::vector<decltype(ShapeDescription::geometry)> descriptions;  ///< one a prototype
   std::vector<Prototype> prototypes;
   std::vector<PlacedShape> placed;  ///< by Embree's geomID, or instID of those that are instances
 

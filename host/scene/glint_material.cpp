@@ -11,9 +11,10 @@
 namespace mica::host {
 namespace {
 
-constexpr int kStretchSteps = 8;       // of a texture, from round to the material's stretch
-constexpr double kLeastCosine = 0.02;  // to a plane of the world; what is seen so askew has no share
-constexpr double kPeriod = 1 << 20;    // of repeated uv: further out, cells would be lost to rounding
+constexpr int kStretchSteps = 8;       // steps of a texture, from round to the material's stretch
+constexpr double kLeastCosine = 0.02;  // a plane of the world that is seen at less has no share
+constexpr double kPeriod =
+    1 << 20;  // repeated uv start again here: further out, cells would be lost to rounding
 
 std::optional<Texture> texture_of(const std::string& path) {
   if (path.empty()) return std::nullopt;
@@ -50,7 +51,7 @@ GlintMaterial::GlintMaterial(const MaterialDescription& material)
 
 std::vector<GlintPlace> GlintMaterial::places(const CameraRay& ray, const Hit& hit, const TangentFrame& frame,
                                               double sigma_pixels) const {
-  constexpr double least = 1e-4;  // of both roughnesses
+  constexpr double least = 1e-4;  // both roughnesses are at least this
   GlintPlace place;
   const Eigen::Vector2d alpha = (glints_.alpha * factor(alpha_, hit.uv)).cwiseMax(least);
   place.microroughness = std::max(material_.roughness * factor(microroughness_, hit.uv), least);

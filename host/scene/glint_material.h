@@ -16,7 +16,7 @@ namespace mica::host {
 /// A process of glints as one footprint sees it: where, and in which axes.
 struct GlintPlace {
   Footprint footprint;
-  /// Of the tangent plane, in which half vectors are given.
+  /// Axes of the tangent plane, in which half vectors are given.
   Eigen::Vector3d x = Eigen::Vector3d::UnitX(), y = Eigen::Vector3d::UnitY();
   double microroughness = 0;
   GlintPoint point;
@@ -42,7 +42,7 @@ class GlintMaterial {
   Color weight(const Hit& hit, const GlintPlace& place, const TangentFrame& frame,
                const Eigen::Vector3d& to_eye, const LobesSeen& seen, const Eigen::Vector3d& to_light) const;
 
-  /// Of a query, with the light's extent.
+  /// The microroughness that a query asks with: the light's extent widens it.
   double microroughness(const GlintPlace& place, const LobesSeen& seen) const;
 
  private:

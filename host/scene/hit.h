@@ -19,13 +19,13 @@ struct Hit {
   double t = 0;
   double error = 0;  ///< distance by which single precision may misplace the surface here, for shadow rays
   Eigen::Vector3d position;
-  Eigen::Vector3d face_normal;  ///< of the plane in which position, dpdu and dpdv lie; unit
+  Eigen::Vector3d face_normal;  ///< normal of the plane in which position, dpdu and dpdv lie; unit
   Eigen::Vector3d normal;       ///< smooth over the shape; unit
   Eigen::Vector3d tangent;      ///< smooth over the shape, towards +u; of any length, may be zero
   Eigen::Vector3d dpdu, dpdv;   ///< zero where uv is degenerate
-  Eigen::Vector2d uv;           ///< of the shape, before the material's repeat
+  Eigen::Vector2d uv;           ///< texture coordinates of the shape, before the material's repeat
   std::uint32_t shape = 0;      ///< index into SceneDescription::shapes
-  std::uint32_t part = 0;       ///< of the shape, by Geometry::parts
+  std::uint32_t part = 0;       ///< which part of the shape was hit, by Geometry::parts
 };
 
 // The exact point at which a ray meets a shape that single precision has already found to be the first:

@@ -11,10 +11,10 @@ namespace mica::host {
 namespace {
 
 // Distance from the axis and height, in units of the jar's height.
-constexpr double widest = 0.43;
+constexpr double kWidest = 0.43;
 
 std::vector<OutlineCorner> body() {
-  return {{{0, 0}, 0},          {{0.36, 0}, 0.04},     {{widest, 0.28}, 0.3},
+  return {{{0, 0}, 0},          {{0.36, 0}, 0.04},     {{kWidest, 0.28}, 0.3},
           {{0.40, 0.62}, 0.12}, {{0.30, 0.695}, 0.03}, {{0.30, 0.75}, 0}};
 }
 
@@ -30,7 +30,7 @@ TriangleMesh make_jar(const JarShape& jar) {
   if (!(jar.center.allFinite() && std::isfinite(jar.size) && jar.size > 0))
     throw UsageError("jar: center must be finite and size positive");
   TriangleMesh mesh;
-  const double circumference = 2 * kPi * widest;
+  const double circumference = 2 * kPi * kWidest;
   add_revolved(rounded_outline(body()), circumference, "body", &mesh);
   add_revolved(rounded_outline(lid()), circumference, "lid", &mesh);
   place_body(jar.center, jar.size, &mesh);

@@ -4,15 +4,16 @@
 #include <cmath>
 
 #include "host/base/constants.h"
+#include "host/microfacet/horizon.h"
 
 namespace mica::host {
 namespace {
 
-constexpr double largest_roughness = 1;  // that evaluators take
+constexpr double kLargestRoughness = 1;  // evaluators take no more
 
 /// Roughness of a query whose light has an extent.
 double widened(double roughness, double half_variance) {
-  return half_variance > 0 ? std::min(largest_roughness, std::sqrt(roughness * roughness + half_variance))
+  return half_variance > 0 ? std::min(kLargestRoughness, std::sqrt(roughness * roughness + half_variance))
                            : roughness;
 }
 
@@ -28,7 +29,7 @@ LobesSeen see_bare(const MaterialDescription& material, double masking_alpha, co
 LobesSeen see_coated(const MaterialDescription& material, const CoatInterface& coat, double masking_alpha,
                      const Eigen::Vector3d& n, const Eigen::Vector3d& to_eye, const Illumination& incident) {
   const Eigen::Vector3d& to_light = incident.direction;
-  const double cos_o = std::max(to_eye.dot(n), min_cosine), cos_i = to_light.dot(n);
+  const double cos_o = std::max(to_eye.dot(n), kMinCosine), cos_i = to_light.dot(n);
   const Eigen::Vector3d light_below = coat.refracted(to_light, n);
   const Eigen::Vector3d half_below = (coat.refracted(to_eye, n) + light_below).normalized();
   // Refraction makes a small light smaller by the index.

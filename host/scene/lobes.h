@@ -10,9 +10,9 @@ namespace mica::host {
 
 /// What a material sends towards the eye of the light from one direction, by unit irradiance of the light.
 struct LobesSeen {
-  Color smooth;                 ///< of all lobes that need no P-NDF
+  Color smooth;                 ///< the sum of all lobes that need no P-NDF
   Eigen::Vector3d half_vector;  ///< at which the P-NDF is asked for; unit, below the coat where there is one
-  double roughness;             ///< of that query, with the light's extent
+  double roughness;             ///< roughness of that query, with the light's extent
   Color glint_weight;           ///< that its density is multiplied with
 };
 

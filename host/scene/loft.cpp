@@ -9,7 +9,7 @@
 namespace mica::host {
 namespace {
 
-constexpr double difference = 1e-5;  // of q and of the angle, for derivatives
+constexpr double kDifference = 1e-5;  // step in q and in the angle, for derivatives
 
 using Section = std::function<LoftSection(double q)>;
 
@@ -22,11 +22,11 @@ Eigen::Vector3d outline(const LoftSection& section, double angle) {
 
 /// Outwards. Beside the tips, at which the section has no width, the nearest one that has stands in.
 Eigen::Vector3d normal_of(const Section& section, double q, double angle) {
-  const double inside = std::clamp(q, 20 * difference, 1 - 20 * difference);
+  const double inside = std::clamp(q, 20 * kDifference, 1 - 20 * kDifference);
   const Eigen::Vector3d along =
-      outline(section(inside + difference), angle) - outline(section(inside - difference), angle);
+      outline(section(inside + kDifference), angle) - outline(section(inside - kDifference), angle);
   const LoftSection here = section(inside);
-  const Eigen::Vector3d around = outline(here, angle + difference) - outline(here, angle - difference);
+  const Eigen::Vector3d around = outline(here, angle + kDifference) - outline(here, angle - kDifference);
   return around.cross(along).stableNormalized();
 }
 

@@ -9,7 +9,7 @@ namespace mica::host {
 /// Cross section of a long, thin, closed body at one place of its length, which runs along x.
 struct LoftSection {
   double x;
-  double middle_y;    ///< of its width
+  double middle_y;    ///< where the middle of its width is
   double half_width;  ///< 0 at both ends of the body
   double rim_z;       ///< height of its edges
   double depth;       ///< by which its middle lies deeper

@@ -7,7 +7,7 @@
 namespace mica::host {
 namespace {
 
-constexpr int outline_steps_around = 360, steps_an_arc = 24, steps_a_line = 24;
+constexpr int kOutlineStepsAround = 360, kStepsAnArc = 24, kStepsALine = 24;
 
 Eigen::Vector2d to_the_right(const Eigen::Vector2d& direction) {
   return {direction.y(), -direction.x()};
@@ -19,12 +19,12 @@ void add_arc(const OutlineCorner& corner, const Eigen::Vector2d& in, const Eigen
              std::vector<OutlinePoint>* points) {
   const double turn =
       std::atan2(in.x() * out.y() - in.y() * out.x(), in.dot(out));  // to the left is positive
-  const double side = turn < 0 ? 1 : -1;  // of the centre, to the right or to the left
+  const double side = turn < 0 ? 1 : -1;  // whether the centre is to the right or to the left
   const Eigen::Vector2d begin = corner.position - corner.radius * std::tan(std::abs(turn) / 2) * in;
   const Eigen::Vector2d center = begin + side * corner.radius * to_the_right(in);
   const Eigen::Vector2d normal = to_the_right(in);
-  for (int n = 0; n <= steps_an_arc; ++n) {
-    const double angle = turn * n / steps_an_arc, c = std::cos(angle), s = std::sin(angle);
+  for (int n = 0; n <= kStepsAnArc; ++n) {
+    const double angle = turn * n / kStepsAnArc, c = std::cos(angle), s = std::sin(angle);
     const Eigen::Vector2d turned(c * normal.x() - s * normal.y(), s * normal.x() + c * normal.y());
     points->push_back({center - side * corner.radius * turned, turned});
   }
@@ -44,7 +44,7 @@ std::vector<OutlinePoint> rounded_outline(const std::vector<OutlineCorner>& corn
   std::vector<OutlinePoint> points;
   for (std::size_t n = 0; n + 1 < turns.size(); ++n) {
     const OutlinePoint &a = turns[n], &b = turns[n + 1];
-    const int steps = a.normal.isApprox(b.normal, 1e-12) ? steps_a_line : 1;
+    const int steps = a.normal.isApprox(b.normal, 1e-12) ? kStepsALine : 1;
     for (int step = 0; step < steps; ++step)
       points.push_back({a.position + (b.position - a.position) * step / steps, a.normal});
   }
@@ -58,10 +58,10 @@ void add_revolved(const std::vector<OutlinePoint>& outline, double circumference
   mesh->parts.push_back(part);
   auto ring = static_cast<std::uint32_t>(mesh->positions.size());
   double length = 0;
-  for (std::size_t n = 0; n < outline.size(); ++n, ring += outline_steps_around + 1) {
+  for (std::size_t n = 0; n < outline.size(); ++n, ring += kOutlineStepsAround + 1) {
     if (n > 0) length += (outline[n].position - outline[n - 1].position).norm();
-    for (int j = 0; j <= outline_steps_around; ++j) {
-      const double u = static_cast<double>(j) / outline_steps_around, angle = 2 * kPi * u;
+    for (int j = 0; j <= kOutlineStepsAround; ++j) {
+      const double u = static_cast<double>(j) / kOutlineStepsAround, angle = 2 * kPi * u;
       const Eigen::Vector3d radial(-std::sin(angle), std::cos(angle), 0),
           forward(-std::cos(angle), -std::sin(angle), 0);
       const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
@@ -73,8 +73,8 @@ void add_revolved(const std::vector<OutlinePoint>& outline, double circumference
     }
     if (n + 1 == outline.size()) break;
     const bool from_axis = outline[n].position.x() < 1e-9, to_axis = outline[n + 1].position.x() < 1e-9;
-    for (std::uint32_t j = 0; j < outline_steps_around; ++j) {
-      const std::uint32_t a = ring + j, b = a + outline_steps_around + 1;
+    for (std::uint32_t j = 0; j < kOutlineStepsAround; ++j) {
+      const std::uint32_t a = ring + j, b = a + kOutlineStepsAround + 1;
       if (!from_axis) mesh->triangles.push_back({a, a + 1, b + 1});
       if (!to_axis) mesh->triangles.push_back({a, b + 1, b});
     }

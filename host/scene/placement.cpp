@@ -6,11 +6,11 @@
 namespace mica::host {
 namespace {
 
-constexpr double degree = kPi / 180;
-constexpr double relative_error = 4e-6;  // of single precision, see hit.cpp
+constexpr double kDegree = kPi / 180;
+constexpr double kRelativeError = 4e-6;  // what single precision leaves, see hit.cpp
 
 Eigen::Affine3d transform_of(const Placement& placement) {
-  const Eigen::Vector3d angles = degree * placement.rotate_degrees;
+  const Eigen::Vector3d angles = kDegree * placement.rotate_degrees;
   return Eigen::Translation3d(placement.translate) * Eigen::AngleAxisd(angles.z(), Eigen::Vector3d::UnitZ()) *
          Eigen::AngleAxisd(angles.y(), Eigen::Vector3d::UnitY()) *
          Eigen::AngleAxisd(angles.x(), Eigen::Vector3d::UnitX()) * Eigen::Scaling(placement.scale);
@@ -36,7 +36,7 @@ Hit PlacedFrame::to_scene(Hit hit) const {
   const Eigen::Matrix3d& linear = to_scene_.linear();
   hit.position = to_scene_ * hit.position;
   // No scale stretches more than all of the matrix; moving far away rounds the position again.
-  hit.error = std::max(hit.error * linear.norm(), relative_error * hit.position.cwiseAbs().maxCoeff());
+  hit.error = std::max(hit.error * linear.norm(), kRelativeError * hit.position.cwiseAbs().maxCoeff());
   hit.face_normal = (normal_to_scene_ * hit.face_normal).normalized();
   hit.normal = (normal_to_scene_ * hit.normal).normalized();
   hit.tangent = linear * hit.tangent;

@@ -9,6 +9,8 @@
 #include <limits>
 #include <utility>
 
+#include "host/base/random.h"
+#include "host/microfacet/horizon.h"
 #include "host/scene/background.h"
 #include "host/scene/camera.h"
 #include "host/scene/coat.h"
@@ -23,8 +25,8 @@
 namespace mica::host {
 namespace {
 
-constexpr double default_masking_alpha = 0.1;
-constexpr double filter_sigma_subpixels = 0.5;
+constexpr double kDefaultMaskingAlpha = 0.1;
+constexpr double kFilterSigmaSubpixels = 0.5;
 
 /// To [0, 1); of a tiny negative number, 1 - x would round to 1.
 Eigen::Vector2d wrap(const Eigen::Vector2d& uv) {
@@ -110,16 +112,13 @@ void check_lights(const std::vector<LightDescription>& lights) {
 void complete(std::vector<double>* masking_alpha, std::size_t materials) {
   for (const double alpha : *masking_alpha)
     if (!(alpha >= 0 && std::isfinite(alpha))) throw UsageError(fmt::format("masking alpha of {}", alpha));
-  masking_alpha->resize(materials, default_masking_alpha);
+  masking_alpha->resize(materials, kDefaultMaskingAlpha);
 }
 
 /// Where on a light the shadow ray of a subpixel ends: all subpixels of a pixel cover the light evenly, in an
 /// order of the pixel's own, so that penumbras have no bands.
 Eigen::Vector2d shadow_sample(std::uint64_t pixel, int subpixel, int subpixels) {
-  std::uint64_t hash = (pixel + 1) * 0x9e3779b97f4a7c15u;  // SplitMix64
-  hash = (hash ^ (hash >> 30)) * 0xbf58476d1ce4e5b9u;
-  hash = (hash ^ (hash >> 27)) * 0x94d049bb133111ebu;
-  hash ^= hash >> 31;
+  const std::uint64_t hash = scramble_bits((pixel + 1) * kGoldenBits);
   const double step = 1.0 / subpixels, unit = 1.0 / 4294967296.0;
   const Eigen::Vector2d shift(unit * static_cast<double>(hash >> 32),
                               unit * static_cast<double>(hash & 0xffffffffu));
@@ -174,9 +173,9 @@ struct StaticScene {
   Environment environment;
   bool shows_environment;  ///< where rays hit nothing
   std::vector<MaterialDescription> materials;
-  std::vector<std::optional<CoatInterface>> coats;  ///< of each material
+  std::vector<std::optional<CoatInterface>> coats;  ///< one a material
   PartMaterials part_materials;
-  std::vector<std::optional<GlintMaterial>> glints;  ///< of each material that a shape has
+  std::vector<std::optional<GlintMaterial>> glints;  ///< one a material; only for those that a shape has
 
   Color far_radiance(const Eigen::Vector3d& direction) const {
     return shows_environment ? environment.radiance(direction) : background.radiance(direction);
@@ -206,7 +205,7 @@ StaticScene make_static_scene(const SceneDescription& description) {
 /// One of a pixel's footprints.
 struct Subpixel {
   std::uint32_t pixel, index;    ///< as in LitPoint
-  Eigen::Vector2d light_sample;  ///< of shadow rays, see light_ray
+  Eigen::Vector2d light_sample;  ///< where on a light shadow rays end, see light_ray
 };
 
 }  // namespace
@@ -214,7 +213,7 @@ struct Subpixel {
 struct Scene::Implementation {
   std::shared_ptr<const StaticScene> shared;
   PinholeCamera camera;
-  std::vector<double> masking_alpha;  ///< of each material
+  std::vector<double> masking_alpha;  ///< one a material
   std::vector<LightDescription> lights;
   LightGathering gathering;
   int width, height, subpixels;
@@ -306,15 +305,15 @@ Color Scene::Implementation::shade(const CameraRay& ray, const Hit& hit, const S
 
   GlintQuery query;
   query.query.footprint.mean_uv = wrap(hit.uv.cwiseProduct(material.repeat));
-  query.query.footprint.cov_uv = footprint_covariance(duv, filter_sigma_subpixels / subpixels);
+  query.query.footprint.cov_uv = footprint_covariance(duv, kFilterSigmaSubpixels / subpixels);
   query.pixel = subpixel.pixel;
   query.material = material_index;
   means->add(query.query.footprint, frame.z);
   Color smooth = Color::Zero();  // what needs no P-NDF
-  if (frame.face_normal.dot(to_eye) < min_cosine) return smooth;
+  if (frame.face_normal.dot(to_eye) < kMinCosine) return smooth;
   const std::optional<GlintMaterial>& glints = shared->glints[material_index];
   std::vector<GlintPlace> places = {{query.query.footprint, frame.x, frame.y, material.roughness, {}}};
-  if (glints) places = glints->places(ray, hit, frame, filter_sigma_subpixels / subpixels);
+  if (glints) places = glints->places(ray, hit, frame, kFilterSigmaSubpixels / subpixels);
 
   const LitPoint point{hit,           frame, to_eye, places.front().footprint, subpixel.pixel, subpixel.index,
                        material_index};
@@ -324,9 +323,9 @@ Color Scene::Implementation::shade(const CameraRay& ray, const Hit& hit, const S
     const Illumination incident = illuminate(light, hit.position);
     if (!(incident.irradiance.maxCoeff() > 0)) continue;
     const double cos_i = incident.direction.dot(frame.z);
-    if (cos_i < min_cosine || incident.direction.dot(frame.face_normal) < min_cosine) continue;
+    if (cos_i < kMinCosine || incident.direction.dot(frame.face_normal) < kMinCosine) continue;
     const LightRay to_light = light_ray(light, hit.position, subpixel.light_sample);
-    if (to_light.direction.dot(frame.face_normal) < min_cosine) continue;
+    if (to_light.direction.dot(frame.face_normal) < kMinCosine) continue;
     if (shared->geometry.occluded(hit, to_light.direction, to_light.distance)) continue;
 
     const LobesSeen seen = see_lobes(material, coat, alpha, frame.z, to_eye, incident);

@@ -21,7 +21,7 @@ struct GlintQuery {
   std::uint32_t pixel = 0;     ///< row * width + column, from the first traced row
   std::uint32_t material = 0;  ///< index into SceneDescription::materials
   Eigen::Vector3f weight = Eigen::Vector3f::Zero();  ///< radiance into the pixel per unit of D
-  GlintPoint glints;                                 ///< of the evaluator "grid"; others do not mind it
+  GlintPoint glints;                                 ///< for the evaluator "grid"; others do not mind it
 };
 
 /// What tracing a block of image rows found. Rows count from the top of the image.
@@ -32,7 +32,8 @@ struct TracedRows {
   std::vector<LitBrdf> lit;         ///< lights on materials that are patch BRDFs, ordered as `queries`
   std::vector<Eigen::Vector3f> radiance;  ///< a pixel: diffuse lobes and background, without glints
   /// AOVs, a pixel: means over its subpixels that hit a shape; zero where none did.
-  std::vector<Eigen::Vector2f> uv;  ///< of the map, wrapped to [0, 1); a mean across the wrap stays there
+  std::vector<Eigen::Vector2f>
+      uv;  ///< coordinates in the map, wrapped to [0, 1); a mean across the wrap stays there
   std::vector<Eigen::Vector3f> footprint;  ///< cuu, cuv, cvv in uv^2
   std::vector<Eigen::Vector3f> normal;     ///< geometric normal towards the camera, world space
   std::vector<std::uint16_t> query_count;

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "host/base/constants.h"
+#include "host/microfacet/horizon.h"
 #include "host/microfacet/masking.h"
 #include "host/scene/fresnel.h"
 
@@ -91,7 +92,7 @@ TangentFrame tangent_frame(const Hit& hit, const Eigen::Vector3d& to_eye) {
   frame.face_normal = hit.face_normal.dot(to_eye) < 0 ? Eigen::Vector3d(-hit.face_normal) : hit.face_normal;
   frame.z = hit.normal.dot(frame.face_normal) < 0 ? Eigen::Vector3d(-hit.normal) : hit.normal;
   // An interpolated normal may turn away from an eye that sees its face.
-  if (frame.z.dot(to_eye) < min_cosine) frame.z = frame.face_normal;
+  if (frame.z.dot(to_eye) < kMinCosine) frame.z = frame.face_normal;
 
   const Eigen::Vector3d x = hit.tangent - hit.tangent.dot(frame.z) * frame.z;
   const bool has_direction = x.norm() > 1e-6 * hit.tangent.norm();

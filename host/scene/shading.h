@@ -7,13 +7,10 @@
 
 namespace mica::host {
 
-/// Directions closer to the horizon of a surface than this cosine neither see nor light it.
-constexpr double min_cosine = 1e-6;
-
 /// Orthonormal; z towards the eye, x along +u, y on the side of +v (see Scene).
 struct TangentFrame {
   Eigen::Vector3d x, y, z;
-  Eigen::Vector3d face_normal;  ///< of the actual surface, towards the eye
+  Eigen::Vector3d face_normal;  ///< normal of the actual surface, towards the eye
 
   Eigen::Vector2d on_disk(const Eigen::Vector3d& direction) const {
     return {direction.dot(x), direction.dot(y)};
@@ -33,7 +30,7 @@ struct Illumination {
   Eigen::Vector3d direction;  ///< towards the light's middle; unit
   double distance;            ///< to the light; infinite for directional ones
   Color irradiance;           ///< on a surface that faces the light
-  double variance = 0;        ///< of the directions in which the light is seen, an axis, radians^2
+  double variance = 0;        ///< variance an axis of the directions in which the light is seen, radians^2
 };
 Illumination illuminate(const LightDescription& light, const Eigen::Vector3d& position);
 

@@ -11,29 +11,30 @@ namespace mica::host {
 namespace {
 
 // [Raup66]'s parameters; lengths in units of the last whorl's distance from the axis.
-constexpr double growth = 0.69314718055994530942 / (2 * kPi);  ///< a radian: whorls double a turn
-constexpr double tube_radius = 0.82;
-constexpr double translation = 1.35;  ///< of the last whorl's centre down the axis, from the apex of the cone
+constexpr double kGrowth = 0.69314718055994530942 / (2 * kPi);  ///< a radian: whorls double a turn
+constexpr double kTubeRadius = 0.82;
+constexpr double kTranslation =
+    1.35;  ///< how far the last whorl's centre lies down the axis from the apex of the cone
 
 /// Angle over which the tube tapers at the apex: two turns leave no visible pit behind its end.
-constexpr double apex_angle = 4 * kPi;
+constexpr double kApexAngle = 4 * kPi;
 
 // The lip, in units of the tube's radius, and how far back along the spiral it reaches.
-constexpr double lip_flare = 0.1, lip_thickness = 0.08;
-constexpr double flare_angle = 1.2, inner_angle = 1.4 * kPi;
+constexpr double kLipFlare = 0.1, kLipThickness = 0.08;
+constexpr double kFlareAngle = 1.2, kInnerAngle = 1.4 * kPi;
 
 // Pose, radians: the aperture's turn about the axis, the axis' lean towards -y, the turn of it all about the
 // vertical.
-constexpr float spin = -0.09f, lean = 0.79f, azimuth = -0.26f;
+constexpr float kSpin = -0.09f, kLean = 0.79f, kAzimuth = -0.26f;
 
-constexpr int shell_steps_around = 224, steps_a_turn = 192, steps_an_end = 48;
+constexpr int kShellStepsAround = 224, kStepsATurn = 192, kStepsAnEnd = 48;
 
 /// The self-similar surface: theta along the spiral (0 at the aperture, negative before), c the share of the
 /// tube's radius, phi around it.
 namespace tube {
 
 double scale(double theta) {
-  return std::exp(growth * theta);
+  return std::exp(kGrowth * theta);
 }
 // Clockwise from above: most snails are dextral.
 Eigen::Vector3d radial(double theta) {
@@ -49,14 +50,14 @@ Eigen::Vector3d spoke(double theta, double phi) {
 
 Eigen::Vector3d position(double theta, double c, double phi) {
   return scale(theta) *
-         (radial(theta) - translation * Eigen::Vector3d::UnitZ() + c * tube_radius * spoke(theta, phi));
+         (radial(theta) - kTranslation * Eigen::Vector3d::UnitZ() + c * kTubeRadius * spoke(theta, phi));
 }
 Eigen::Vector3d d_theta(double theta, double c, double phi) {
-  return growth * position(theta, c, phi) +
-         scale(theta) * (1 + c * tube_radius * std::cos(phi)) * forward(theta);
+  return kGrowth * position(theta, c, phi) +
+         scale(theta) * (1 + c * kTubeRadius * std::cos(phi)) * forward(theta);
 }
 Eigen::Vector3d d_c(double theta, double phi) {
-  return scale(theta) * tube_radius * spoke(theta, phi);
+  return scale(theta) * kTubeRadius * spoke(theta, phi);
 }
 /// Direction in which phi falls; unit, and so defined even where the circle has no radius.
 Eigen::Vector3d around(double theta, double phi) {
@@ -64,7 +65,7 @@ Eigen::Vector3d around(double theta, double phi) {
 }
 /// Length of the circle c = 1.
 double circumference(double theta) {
-  return 2 * kPi * tube_radius * scale(theta);
+  return 2 * kPi * kTubeRadius * scale(theta);
 }
 
 }  // namespace tube
@@ -80,18 +81,18 @@ struct ProfilePoint {
 class Profile {
  public:
   explicit Profile(double turns)
-      : start_(-2 * kPi * turns), rounding_(tube_radius / tube::d_theta(0, 1, 0).norm()) {
-    add(steps(apex_angle) / 2, [&](double x) { return apex(x); });
+      : start_(-2 * kPi * turns), rounding_(kTubeRadius / tube::d_theta(0, 1, 0).norm()) {
+    add(steps(kApexAngle) / 2, [&](double x) { return apex(x); });
     add(steps(-start_), [&](double x) { return outer_wall(x); });
-    add(2 * steps_an_end, [&](double x) { return rim(x); });
-    add(steps(inner_angle), [&](double x) { return inner_wall(x); });
-    add(steps_an_end, [&](double x) { return inner_end(x); });
+    add(2 * kStepsAnEnd, [&](double x) { return rim(x); });
+    add(steps(kInnerAngle), [&](double x) { return inner_wall(x); });
+    add(kStepsAnEnd, [&](double x) { return inner_end(x); });
     points_.push_back(inner_end(1));
   }
   const std::vector<ProfilePoint>& points() const { return points_; }
 
  private:
-  static int steps(double angle) { return static_cast<int>(std::ceil(angle / (2 * kPi) * steps_a_turn)); }
+  static int steps(double angle) { return static_cast<int>(std::ceil(angle / (2 * kPi) * kStepsATurn)); }
 
   template <class Section>
   void add(int count, const Section& section) {
@@ -100,25 +101,25 @@ class Profile {
 
   ProfilePoint apex(double x) const {
     const double sin = std::sin(kPi / 2 * x), cos = std::cos(kPi / 2 * x);
-    return {start_ - apex_angle * cos, sin, apex_angle * sin, cos};
+    return {start_ - kApexAngle * cos, sin, kApexAngle * sin, cos};
   }
   ProfilePoint outer_wall(double x) const { return wall(start_ * (1 - x)); }
   ProfilePoint rim(double x) const {
-    const double sin = std::sin(kPi * x), cos = std::cos(kPi * x), half = lip_thickness / 2;
-    return {rounding_ * half * sin, 1 + lip_flare - half + half * cos, rounding_ * cos, -sin};
+    const double sin = std::sin(kPi * x), cos = std::cos(kPi * x), half = kLipThickness / 2;
+    return {rounding_ * half * sin, 1 + kLipFlare - half + half * cos, rounding_ * cos, -sin};
   }
   ProfilePoint inner_wall(double x) const {
-    const ProfilePoint outer = wall(-inner_angle * x);
-    return {outer.theta, outer.c - lip_thickness, -outer.dtheta, -outer.dc};
+    const ProfilePoint outer = wall(-kInnerAngle * x);
+    return {outer.theta, outer.c - kLipThickness, -outer.dtheta, -outer.dc};
   }
   ProfilePoint inner_end(double x) const {
-    const double sin = std::sin(kPi / 2 * x), cos = std::cos(kPi / 2 * x), c = 1 - lip_thickness;
-    return {-inner_angle - rounding_ * sin, c * cos, -rounding_ * cos, -c * sin};
+    const double sin = std::sin(kPi / 2 * x), cos = std::cos(kPi / 2 * x), c = 1 - kLipThickness;
+    return {-kInnerAngle - rounding_ * sin, c * cos, -rounding_ * cos, -c * sin};
   }
   /// The outer wall, which flares towards the lip as a smoothstep.
   static ProfilePoint wall(double theta) {
-    const double x = std::max(0.0, 1 + theta / flare_angle);
-    return {theta, 1 + lip_flare * x * x * (3 - 2 * x), 1, lip_flare * 6 * x * (1 - x) / flare_angle};
+    const double x = std::max(0.0, 1 + theta / kFlareAngle);
+    return {theta, 1 + kLipFlare * x * x * (3 - 2 * x), 1, kLipFlare * 6 * x * (1 - x) / kFlareAngle};
   }
 
   double start_, rounding_;  ///< rounding_: angle as long on the outer side as the tube's radius
@@ -126,8 +127,8 @@ class Profile {
 };
 
 void add_ring(const ProfilePoint& at, double u, TriangleMesh* mesh) {
-  for (int j = 0; j <= shell_steps_around; ++j) {
-    const double v = static_cast<double>(j) / shell_steps_around;
+  for (int j = 0; j <= kShellStepsAround; ++j) {
+    const double v = static_cast<double>(j) / kShellStepsAround;
     const double phi = kPi - 2 * kPi * v;  // the seam faces the axis
     const Eigen::Vector3d along =
         at.dtheta * tube::d_theta(at.theta, at.c, phi) + at.dc * tube::d_c(at.theta, phi);
@@ -140,8 +141,8 @@ void add_ring(const ProfilePoint& at, double u, TriangleMesh* mesh) {
 
 /// Triangles between a ring and the next; those that vanish where a ring is a point are left out.
 void join_rings(std::uint32_t first, bool from_point, bool to_point, TriangleMesh* mesh) {
-  for (std::uint32_t j = 0; j < shell_steps_around; ++j) {
-    const std::uint32_t a = first + j, b = a + shell_steps_around + 1;
+  for (std::uint32_t j = 0; j < kShellStepsAround; ++j) {
+    const std::uint32_t a = first + j, b = a + kShellStepsAround + 1;
     if (!to_point) mesh->triangles.push_back({a, b, b + 1});
     if (!from_point) mesh->triangles.push_back({a, b + 1, a + 1});
   }
@@ -157,7 +158,7 @@ TriangleMesh sweep(const std::vector<ProfilePoint>& profile) {
     const ProfilePoint& next = profile[i + 1];
     u += (tube::position(next.theta, next.c, 0) - tube::position(at.theta, at.c, 0)).norm() /
          tube::circumference((at.theta + next.theta) / 2);
-    join_rings(static_cast<std::uint32_t>(i * (shell_steps_around + 1)), i == 0, i + 2 == profile.size(),
+    join_rings(static_cast<std::uint32_t>(i * (kShellStepsAround + 1)), i == 0, i + 2 == profile.size(),
                &mesh);
   }
   return mesh;
@@ -165,10 +166,10 @@ TriangleMesh sweep(const std::vector<ProfilePoint>& profile) {
 
 /// Leans the axis as a snail carries it, and sets the bounding box on the ground.
 void place(const ShellShape& shell, TriangleMesh* mesh) {
-  const Eigen::Matrix3f rotation =
-      (Eigen::AngleAxisf(azimuth, Eigen::Vector3f::UnitZ()) *
-       Eigen::AngleAxisf(lean, Eigen::Vector3f::UnitX()) * Eigen::AngleAxisf(spin, Eigen::Vector3f::UnitZ()))
-          .toRotationMatrix();
+  const Eigen::Matrix3f rotation = (Eigen::AngleAxisf(kAzimuth, Eigen::Vector3f::UnitZ()) *
+                                    Eigen::AngleAxisf(kLean, Eigen::Vector3f::UnitX()) *
+                                    Eigen::AngleAxisf(kSpin, Eigen::Vector3f::UnitZ()))
+                                       .toRotationMatrix();
   Eigen::AlignedBox3f box;
   for (Eigen::Vector3f& position : mesh->positions) box.extend(position = rotation * position);
   for (Eigen::Vector3f& normal : mesh->normals) normal = rotation * normal;

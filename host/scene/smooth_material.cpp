@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "host/base/constants.h"
+#include "host/microfacet/horizon.h"
 #include "host/scene/fresnel.h"
 #include "host/scene/lobes.h"
 #include "host/scene/shading.h"
@@ -13,8 +14,8 @@
 namespace mica::host {
 namespace {
 
-constexpr double least_alpha =
-    1e-3;  // of a flat map: smoother is a mirror, which no draw towards a light meets
+constexpr double kLeastAlpha =
+    1e-3;  // a flat map has this: smoother is a mirror, which no draw towards a light meets
 
 /// [Che18] Eq. 4, centred and isotropic.
 double beckmann_density(const Eigen::Vector3d& half, double alpha) {
@@ -23,7 +24,7 @@ double beckmann_density(const Eigen::Vector3d& half, double alpha) {
 }
 
 bool above_horizon(const Eigen::Vector3d& view, const Eigen::Vector3d& light) {
-  return view.z() >= min_cosine && light.z() >= min_cosine;
+  return view.z() >= kMinCosine && light.z() >= kMinCosine;
 }
 
 VisibleNormals isotropic_normals(double slope_sigma) {
@@ -36,7 +37,7 @@ SmoothMaterial::SmoothMaterial(const MaterialDescription& material, const std::o
                                double alpha, Lobes lobes)
     : material_(material),
       coat_(coat),
-      alpha_(std::max(alpha, least_alpha)),
+      alpha_(std::max(alpha, kLeastAlpha)),
       diffuse_weight_(material.diffuse.maxCoeff()),
       coat_weight_(coat ? 0.3 : 0),
       normals_weight_(lobes == Lobes::with_smooth_normals

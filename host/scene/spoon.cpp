@@ -10,11 +10,11 @@
 namespace mica::host {
 namespace {
 
-constexpr int spoon_steps = 320, spoon_steps_around = 160;
+constexpr int kSpoonSteps = 320, kSpoonStepsAround = 160;
 
 // Lengths in units of the spoon's; x runs from the handle's end at -1/2 to the bowl's tip at 1/2.
-constexpr double bowl_middle = 0.335, bowl_half_length = 0.165, bowl_half_width = 0.112, bowl_depth = 0.042;
-constexpr double spoon_handle_end = 0.035;  ///< over which the handle rounds off
+constexpr double kBowlMiddle = 0.335, kBowlHalfLength = 0.165, kBowlHalfWidth = 0.112, kBowlDepth = 0.042;
+constexpr double kSpoonHandleEnd = 0.035;  ///< the handle rounds off over this length
 
 /// How wide an ellipse is at `x` from its middle, as a share of its half width.
 double ellipse(double x, double half_length) {
@@ -27,13 +27,13 @@ class Spoon {
   LoftSection operator()(double q) const {
     const double x = -0.5 * std::cos(kPi * q);  // closer together at both tips
     // Broadest before the middle, as an egg.
-    const double along = (x - bowl_middle) / bowl_half_length;
-    const double egg = bowl_half_width * ellipse(along, 1) * (1 - 0.12 * along);
+    const double along = (x - kBowlMiddle) / kBowlHalfLength;
+    const double egg = kBowlHalfWidth * ellipse(along, 1) * (1 - 0.12 * along);
     double handle = handle_width_.at(x);
-    if (x < spoon_handle_end - 0.5) handle *= ellipse(spoon_handle_end - 0.5 - x, spoon_handle_end);
-    if (x > bowl_middle) handle *= ellipse(along, 1);
+    if (x < kSpoonHandleEnd - 0.5) handle *= ellipse(kSpoonHandleEnd - 0.5 - x, kSpoonHandleEnd);
+    if (x > kBowlMiddle) handle *= ellipse(along, 1);
     const double width = std::cbrt(egg * egg * egg + handle * handle * handle);
-    const double hollow = along * along < 1 ? bowl_depth * std::pow(1 - along * along, 1.5) : 0;
+    const double hollow = along * along < 1 ? kBowlDepth * std::pow(1 - along * along, 1.5) : 0;
     return {x, 0, width, rim_.at(x), hollow, thickness_.at(x)};
   }
 
@@ -56,7 +56,7 @@ TriangleMesh make_spoon(const SpoonShape& spoon) {
   if (!(spoon.center.allFinite() && std::isfinite(spoon.size) && spoon.size > 0))
     throw UsageError("spoon: center must be finite and size positive");
   TriangleMesh mesh;
-  add_loft(Spoon(), spoon_steps, spoon_steps_around, &mesh);
+  add_loft(Spoon(), kSpoonSteps, kSpoonStepsAround, &mesh);
   place_body(spoon.center, spoon.size, &mesh);
   return mesh;
 }

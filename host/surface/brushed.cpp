@@ -10,7 +10,7 @@
 namespace mica::host {
 namespace {
 
-constexpr double kLeastCorrelation = 1e-3;  // texels; far below what any grid resolves
+constexpr double kLeastCorrelation = 1e-3;  // texels; far below what any map resolves
 
 void check(const BrushedSurface& brushed) {
   synthesis::check_resolution("brushed", brushed.resolution);
@@ -29,7 +29,7 @@ std::vector<Eigen::Vector2d> synthesise_brushed(const BrushedSurface& brushed, S
   const double along = brushed.correlation_along_texels, across = brushed.correlation_across_texels;
   if (std::min(along, across) < 2) {
     report.warnings.push_back(fmt::format(
-        "brushed: a correlation of {} texels is finer than the grid resolves; the map's is longer "
+        "brushed: a correlation of {} texels is finer than the texels resolve; the map's is longer "
         "(use 2 or more)",
         std::min(along, across)));
   }

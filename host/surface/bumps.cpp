@@ -2,9 +2,9 @@
 
 #include <cmath>
 
+#include "host/base/random.h"
 #include "host/surface/features.h"
 #include "host/surface/height_modes.h"
-#include "host/surface/random.h"
 #include "host/surface/settings.h"
 #include "host/surface/synthesis.h"
 
@@ -45,10 +45,10 @@ std::vector<Bump> place_bumps(const BumpsSurface& bumps) {
   const long cells = std::lround(bumps.resolution / bumps.cell_texels);
   const double cell = static_cast<double>(bumps.resolution) / static_cast<double>(cells);
   std::vector<Bump> placed;
-  if (bumps.slope == 0) return placed;  // of an ellipsoid without end
+  if (bumps.slope == 0) return placed;  // it would be an ellipsoid without end
   for (long n = 0; n < cells * cells; ++n) {
     const auto unit = [&](BumpStream stream) {
-      return synthesis::random_unit(bumps.seed, stream, static_cast<std::uint64_t>(n));
+      return random_unit(bumps.seed, stream, static_cast<std::uint64_t>(n));
     };
     const long column = n % cells, row = n / cells;
     const Eigen::Vector2d middle(static_cast<double>(column) + 0.5, static_cast<double>(row) + 0.5);

@@ -2,9 +2,9 @@
 
 #include <cmath>
 
+#include "host/base/random.h"
 #include "host/surface/features.h"
 #include "host/surface/height_modes.h"
-#include "host/surface/random.h"
 #include "host/surface/settings.h"
 #include "host/surface/synthesis.h"
 
@@ -43,7 +43,7 @@ std::vector<Dent> place_dents(const DentsSurface& dents) {
       static_cast<std::uint64_t>(std::llround(dents.density * area / (kPi * mean_squared_radius)));
   std::vector<Dent> placed;
   for (std::uint64_t n = 0; n < count; ++n) {
-    const auto unit = [&](DentStream stream) { return synthesis::random_unit(dents.seed, stream, n); };
+    const auto unit = [&](DentStream stream) { return random_unit(dents.seed, stream, n); };
     Dent dent;
     dent.center_texels = dents.resolution * Eigen::Vector2d(unit(dent_u_stream), unit(dent_v_stream));
     dent.radius = low + (high - low) * unit(dent_radius_stream);

@@ -5,12 +5,40 @@
 #include <variant>
 #include <vector>
 
+#include "host/base/words.h"
+
 namespace mica::host {
 
 enum class Interpolation { nearest, bilinear, bicubic };
 enum class Encoding { unorm, signed_float, height, slope };  ///< `signed` is a keyword: signed_float
 enum class GreenDirection { up, down };
 enum class TexelRepair { repair, refuse };  ///< what to do with NaN, infinite and zero-length texels
+
+template <>
+struct Words<Interpolation> {
+  static constexpr Word<Interpolation> all[] = {{"nearest", Interpolation::nearest},
+                                                {"bilinear", Interpolation::bilinear},
+                                                {"bicubic", Interpolation::bicubic}};
+};
+
+template <>
+struct Words<Encoding> {
+  static constexpr Word<Encoding> all[] = {{"unorm", Encoding::unorm},
+                                           {"signed", Encoding::signed_float},
+                                           {"height", Encoding::height},
+                                           {"slope", Encoding::slope}};
+};
+
+template <>
+struct Words<GreenDirection> {
+  static constexpr Word<GreenDirection> all[] = {{"up", GreenDirection::up}, {"down", GreenDirection::down}};
+};
+
+template <>
+struct Words<TexelRepair> {
+  static constexpr Word<TexelRepair> all[] = {{"repair", TexelRepair::repair},
+                                              {"refuse", TexelRepair::refuse}};
+};
 
 /// A normal map in a file. Settings that the job leaves out are derived from the pixel type and logged.
 struct MapFile {
@@ -46,11 +74,17 @@ struct BrushedSurface {
   double rms_slope = 0.15;                ///< sqrt(E[p^2 + q^2]) of the slopes p, q; 0..5
   double correlation_along_texels = 200;  ///< where the height's autocorrelation is 1/e, along the brushing
   double correlation_across_texels = 3;   ///< and across it
-  double direction_degrees = 0;           ///< of the brushing, from +u towards +v; -360..360
+  double direction_degrees = 0;           ///< direction of the brushing, from +u towards +v; -360..360
   std::uint64_t seed = 1;
 };
 
 enum class ScratchProfile { v, rounded };
+
+template <>
+struct Words<ScratchProfile> {
+  static constexpr Word<ScratchProfile> all[] = {{"v", ScratchProfile::v},
+                                                 {"rounded", ScratchProfile::rounded}};
+};
 
 /// Random scratches in a flat surface, straight or slightly bent ([Yan14] cutlery). Heights add where they
 /// cross.
@@ -74,18 +108,19 @@ struct DentsSurface {
   double density = 0.5;            ///< sum of the dents' areas over the map's, 0..16
   double radius_low_texels = 8;    ///< radii are uniform from here, 1..resolution
   double radius_high_texels = 32;  ///< to here, at most the resolution
-  double depth = 0.1;              ///< of a dent, over its radius; 0..1
+  double depth = 0.1;              ///< depth of a dent, over its radius; 0..1
   std::uint64_t seed = 1;
 };
 
-/// Bumpy plastic: caps of ellipsoids on a jittered grid ([Yan14] blender). Heights add where they overlap.
+/// Bumpy plastic: caps of ellipsoids on a jittered lattice ([Yan14] blender). Heights add where they overlap.
 struct BumpsSurface {
-  int resolution = 2048;    ///< texels a side, 4..16384
-  double cell_texels = 24;  ///< side of the grid's cells, 4..resolution; rounded so that they fill the period
-  double size = 0.8;        ///< length of a bump over the cell's side, above 0..2
-  double aspect = 1.5;      ///< length of a bump over its width, 1..10; each is turned at random
-  double slope = 0.3;       ///< the steepest of a bump, at its rim; 0..5
-  double jitter = 0.5;      ///< centres are uniform over this share of their cell's sides; 0..1
+  int resolution = 2048;  ///< texels a side, 4..16384
+  double cell_texels =
+      24;               ///< side of the lattice's cells, 4..resolution; rounded so that they fill the period
+  double size = 0.8;    ///< length of a bump over the cell's side, above 0..2
+  double aspect = 1.5;  ///< length of a bump over its width, 1..10; each is turned at random
+  double slope = 0.3;   ///< the steepest of a bump, at its rim; 0..5
+  double jitter = 0.5;  ///< centres are uniform over this share of their cell's sides; 0..1
   std::uint64_t seed = 1;
 };
 

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "host/base/constants.h"
+#include "host/base/random.h"
 #include "host/surface/disk.h"
 #include "host/surface/poisson_disk.h"
-#include "host/surface/random.h"
 #include "host/surface/synthesis.h"
 #include "mica/error.h"
 
@@ -36,8 +36,8 @@ void check(const FlakesSurface& flakes) {
 /// from P22, which is Gaussian with a variance of alpha^2 / 2 an axis. [Walter07] Eq. 28 in slope space.
 Eigen::Vector2d beckmann_normal(double alpha, std::uint64_t seed, std::uint64_t flake) {
   const std::uint64_t stream = 1u << 20;  // beyond those of PoissonDisk
-  const double slope = alpha * std::sqrt(-std::log1p(-synthesis::random_unit(seed, stream, flake)));
-  const double angle = 2 * kPi * synthesis::random_unit(seed, stream + 1, flake);
+  const double slope = alpha * std::sqrt(-std::log1p(-random_unit(seed, stream, flake)));
+  const double angle = 2 * kPi * random_unit(seed, stream + 1, flake);
   return disk_from_slope({slope * std::cos(angle), slope * std::sin(angle)});
 }
 

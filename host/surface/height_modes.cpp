@@ -6,8 +6,8 @@
 #include <numeric>
 #include <unsupported/Eigen/FFT>
 
+#include "host/base/random.h"
 #include "host/surface/disk.h"
-#include "host/surface/random.h"
 
 namespace mica::host::synthesis {
 namespace {

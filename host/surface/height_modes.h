@@ -17,8 +17,8 @@ inline Eigen::Vector2d wave_vector(int resolution, int m, int n) {
 }
 
 /// Calls visit(m, n) for the modes that a real heightfield of `resolution` texels a side can have a slope of:
-/// all of the grid but the Nyquist ones, which have no partner of opposite sign. Columns of constant m run in
-/// parallel.
+/// all of the lattice but the Nyquist ones, which have no partner of opposite sign. Columns of constant m run
+/// in parallel.
 void for_each_mode(int resolution, const std::function<void(int m, int n)>& visit);
 
 /// Sum of quantity(m, n) over those modes; the same bits for any number of threads.

@@ -45,7 +45,7 @@ class ExrHeader {
       stream_.seekg(begin + size);
     }
     const std::int64_t width = window_[2] - window_[0] + 1, height = window_[3] - window_[1] + 1;
-    const std::int64_t least_bytes = 2;  // of half floats
+    const std::int64_t least_bytes = 2;  // half floats are the smallest pixels
     check_declared_size(path_, file_size_, width, height, channels_, least_bytes);
   }
 

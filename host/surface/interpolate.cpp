@@ -5,8 +5,8 @@
 namespace mica::host {
 namespace {
 
-/// Linear interpolation on the grid of `vertex(a, b)` at integer positions, each cell split from (a+1, b) to
-/// (a, b+1).
+/// Linear interpolation on the lattice of `vertex(a, b)` at integer positions, each cell split from (a+1, b)
+/// to (a, b+1).
 template <typename VertexFunction>
 Eigen::Vector2d piecewise_linear(const Eigen::Vector2d& position, const VertexFunction& vertex) {
   const Eigen::Vector2d corner(std::floor(position.x()), std::floor(position.y()));

@@ -10,7 +10,7 @@ namespace mica::host {
 /// two. They add up to 1; at f = 0 and 1 they select one sample exactly.
 Eigen::Vector4d catmull_rom_weights(double f);
 
-/// Vertex (a, b) of the quarter-texel grid that `bicubic` is made of: Catmull-Rom at (a / 4 + 0.5, b / 4 +
+/// Vertex (a, b) of the quarter-texel lattice that `bicubic` is made of: Catmull-Rom at (a / 4 + 0.5, b / 4 +
 /// 0.5) texels. Where a and b are multiples of 4 this is texel (a / 4, b / 4) itself. Any integers, wrapped.
 /// Catmull-Rom overshoots: next to a steep step the result may lie slightly outside the range of its texels,
 /// even outside the unit disk.

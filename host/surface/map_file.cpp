@@ -14,20 +14,6 @@ namespace {
 
 constexpr double kShortestNormal = 0.01;  // what is shorter has no direction to speak of
 
-const char* name_of(Encoding encoding) {
-  switch (encoding) {
-    case Encoding::unorm:
-      return "unorm";
-    case Encoding::signed_float:
-      return "signed";
-    case Encoding::height:
-      return "height";
-    case Encoding::slope:
-      break;
-  }
-  return "slope";
-}
-
 std::string describe(const MapPixels& pixels) {
   switch (pixels.type) {
     case MapPixels::Type::unsigned_integer:
@@ -47,16 +33,16 @@ Encoding choose_encoding(const MapFile& file, const MapPixels& pixels, SurfaceRe
       throw UsageError(file.path + ": has one channel; say encoding = \"height\" and its height_scale");
     }
     const Encoding assumed = is_unsigned ? Encoding::unorm : Encoding::signed_float;
-    report.notes.push_back(fmt::format("encoding {} assumed from {}", name_of(assumed), describe(pixels)));
+    report.notes.push_back(fmt::format("encoding {} assumed from {}", word_of(assumed), describe(pixels)));
     return assumed;
   }
   if (pixels.channels == 1 && file.encoding != Encoding::height) {
     throw UsageError(fmt::format("{}: has one channel; encoding {} needs two or three", file.path,
-                                 name_of(file.encoding)));
+                                 word_of(file.encoding)));
   }
   if (is_unsigned && (file.encoding == Encoding::signed_float || file.encoding == Encoding::slope)) {
     throw UsageError(fmt::format("{}: has {}, which hold no negative numbers; encoding {} needs float pixels",
-                                 file.path, describe(pixels), name_of(file.encoding)));
+                                 file.path, describe(pixels), word_of(file.encoding)));
   }
   return file.encoding;
 }

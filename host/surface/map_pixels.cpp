@@ -113,7 +113,7 @@ MapPixels read_map_pixels(const std::string& path, SurfaceReport& report) {
     return read(path, report);
   } catch (const Error&) {
     throw;
-  } catch (const std::exception& error) {  // of a library below
+  } catch (const std::exception& error) {  // comes from a library below
     throw FileError(path + ": cannot be read as an image: " + reason(error.what()));
   }
 }

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <utility>
 
-#include "host/surface/random.h"
+#include "host/base/random.h"
 
 namespace mica::host::synthesis {
 namespace {

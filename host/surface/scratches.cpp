@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/base/random.h"
 #include "host/surface/features.h"
 #include "host/surface/height_modes.h"
-#include "host/surface/random.h"
 #include "host/surface/settings.h"
 #include "host/surface/synthesis.h"
 
@@ -63,7 +63,7 @@ Eigen::Vector2d Scratch::slope(const Eigen::Vector2d& offset) const {
   const double x = (left.dot(offset) - bend * (1 - t * t)) / half_width;
   if (std::abs(t) >= 1 || std::abs(x) >= 1) return {0, 0};
   const Profile across = profile_at(profile, x);
-  const double share = 1 - t * t * t * t;  // of the depth: less and less towards the ends
+  const double share = 1 - t * t * t * t;  // share of the depth: less and less towards the ends
   const double across_slope = depth * share * across.slope / half_width;
   const double along_slope =
       (depth * -4 * t * t * t * across.height + across_slope * 2 * bend * t) / half_length;
@@ -77,7 +77,7 @@ std::vector<Scratch> place_scratches(const ScratchesSurface& scratches) {
       std::llround(scratches.density * area / (scratches.length_texels * scratches.width_texels)));
   std::vector<Scratch> placed;
   for (std::uint64_t n = 0; n < count; ++n) {
-    const auto unit = [&](ScratchStream stream) { return synthesis::random_unit(scratches.seed, stream, n); };
+    const auto unit = [&](ScratchStream stream) { return random_unit(scratches.seed, stream, n); };
     const auto varied = [&](ScratchStream stream) {
       return 1 + scratches.variation * (2 * unit(stream) - 1);
     };
@@ -105,7 +105,7 @@ std::vector<Eigen::Vector2d> synthesise_scratches(const ScratchesSurface& scratc
   const double narrowest = scratches.width_texels * (1 - scratches.variation);
   if (narrowest < kResolvedWidth) {
     report.warnings.push_back(fmt::format(
-        "scratches: widths from {} texels on are finer than the grid resolves; expected {} or more",
+        "scratches: widths from {} texels on are finer than the texels resolve; expected {} or more",
         narrowest, kResolvedWidth));
   }
   return synthesis::normals_of_features(scratches.resolution, placed);

@@ -24,7 +24,7 @@ std::vector<Eigen::Vector2d> synthesise_spectrum(const SpectrumSurface& spectrum
   check(spectrum);
   if (spectrum.correlation_texels < 2) {
     report.warnings.push_back(
-        fmt::format("spectrum: a correlation of {} texels is finer than the grid resolves; the map's is "
+        fmt::format("spectrum: a correlation of {} texels is finer than the texels resolve; the map's is "
                     "longer (use 2 or more)",
                     spectrum.correlation_texels));
   }

@@ -14,9 +14,9 @@ namespace mica::host {
 ///
 /// The height's modes have the amplitudes of the power spectrum exp(-(k c)^2 / 4), that of an autocorrelation
 /// of exp(-(d / c)^2) at distance d, and independent uniform phases. So the RMS slope over the texels is the
-/// one asked for, exactly, and so is the autocorrelation, as far as the grid resolves it and the period holds
-/// it. Throws UsageError when a setting is out of range: resolution 4..16384, rms_slope 0..5,
-/// correlation_texels above 0 and at most the resolution. Warns where the grid or the period bends the
+/// one asked for, exactly, and so is the autocorrelation, as far as the texels resolve it and the period
+/// holds it. Throws UsageError when a setting is out of range: resolution 4..16384, rms_slope 0..5,
+/// correlation_texels above 0 and at most the resolution. Warns where the texels or the period bends the
 /// autocorrelation.
 std::vector<Eigen::Vector2d> synthesise_spectrum(const SpectrumSurface& spectrum, SurfaceReport& report);
 
@@ -77,13 +77,13 @@ struct Bump {
   Eigen::Vector2d center_texels;  ///< may lie outside [0, resolution)^2
   Eigen::Vector2d long_axis;      ///< unit
   double half_length, half_width;
-  double squared_radius;  ///< of the ellipsoid, over that of the cap: 1 + 1 / slope^2
+  double squared_radius;  ///< squared radius of the ellipsoid, over that of the cap: 1 + 1 / slope^2
 
   synthesis::Extent extent() const;
   Eigen::Vector2d slope(const Eigen::Vector2d& offset) const;
 };
 
-/// One bump a cell of the grid.
+/// One bump a cell of the lattice.
 std::vector<Bump> place_bumps(const BumpsSurface& bumps);
 std::vector<Eigen::Vector2d> synthesise_bumps(const BumpsSurface& bumps, SurfaceReport& report);
 

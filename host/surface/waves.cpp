@@ -15,7 +15,7 @@ namespace {
 constexpr double kGravity = 9.81;  // m / s^2
 constexpr double kAlpha = 8.1e-3, kBeta = 0.74;
 
-constexpr double kLeast = 1e-6;  // of settings that are above 0
+constexpr double kLeast = 1e-6;  // settings that are above 0 are at least this
 constexpr double kEnoughVariance =
     0.9;  // share of the sea's; less, and its longest waves are missing visibly
 
@@ -39,7 +39,8 @@ Eigen::Vector2d wave_vector(const WavesSurface& waves, int m, int n) {
 
 /// Share of the sea's height variance that the map's modes hold.
 double share_of_variance(const WavesSurface& waves) {
-  const double cell = std::pow(2 * kPi / waves.patch_meters, 2);  // of wave vectors, a mode
+  const double cell =
+      std::pow(2 * kPi / waves.patch_meters, 2);  // area of wave vectors that a mode stands for
   const double variance = synthesis::sum_over_modes(
       waves.resolution, [&](int m, int n) { return cell * wave_spectrum(waves, wave_vector(waves, m, n)); });
   return variance / wave_height_variance(waves.wind_speed);

@@ -113,7 +113,7 @@ class CsvReader {
   const std::size_t required_;
   std::ifstream stream_;
   std::size_t line_number_ = 0;
-  std::vector<std::size_t> order_;  // of `names_`, column by column of the file
+  std::vector<std::size_t> order_;  // which of `names_` each column of the file is
 };
 
 }  // namespace

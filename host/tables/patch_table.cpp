@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "host/surface/random.h"
+#include "host/base/random.h"
 #include "host/tables/query_table.h"
 #include "mica/error.h"
 
@@ -56,7 +56,7 @@ BrdfQuery PatchTable::brdf(std::size_t row) const {
 }
 
 SampleQuery PatchTable::sample(std::size_t row, std::uint64_t seed) const {
-  return {view(row), synthesis::random_bits(seed, 0, row)};
+  return {view(row), random_bits(seed, 0, row)};
 }
 
 void PatchTable::check(const std::function<std::string(const ViewQuery&)>& view_problem) const {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/base/random.h"
 #include "host/base/symmetric_matrix.h"
 #include "host/surface/interpolate.h"
-#include "host/surface/random.h"
 
 namespace mica::host {
 namespace {
@@ -14,9 +14,7 @@ namespace {
 class Random {
  public:
   explicit Random(std::uint64_t seed) : seed_(seed) {}
-  double uniform(double low, double high) {
-    return low + (high - low) * synthesis::random_unit(seed_, 0, count_++);
-  }
+  double uniform(double low, double high) { return low + (high - low) * random_unit(seed_, 0, count_++); }
   /// Box and Muller.
   Eigen::Vector2d normal() {
     const double radius = std::sqrt(-2 * std::log1p(-uniform(0, 1)));
@@ -68,16 +66,6 @@ void add_brightest(Evaluator* evaluator, const Surface& surface, std::vector<std
 }
 
 }  // namespace
-
-Footprint make_footprint(const Surface& surface, const Eigen::Vector2d& mean_uv, double sigma_major_texels,
-                         double sigma_minor_texels, double angle) {
-  const Eigen::Array2d texels(surface.width(), surface.height());
-  const Eigen::Vector2d major =
-      sigma_major_texels * Eigen::Array2d(std::cos(angle), std::sin(angle)) / texels;
-  const Eigen::Vector2d minor =
-      sigma_minor_texels * Eigen::Array2d(-std::sin(angle), std::cos(angle)) / texels;
-  return {mean_uv, major * major.transpose() + minor * minor.transpose()};
-}
 
 std::vector<Query> probe(const Surface& surface, const Footprint& footprint, double roughness,
                          int half_vectors, std::uint64_t seed) {

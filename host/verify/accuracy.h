@@ -13,11 +13,6 @@
 
 namespace mica::host {
 
-/// A footprint by its axes.
-/// @param angle radians from +u to the major axis, in texel space.
-Footprint make_footprint(const Surface& surface, const Eigen::Vector2d& mean_uv, double sigma_major_texels,
-                         double sigma_minor_texels, double angle);
-
 /// Queries of one footprint, by turns on the normals under it, near them (1 to 4 roughnesses away), where
 /// densities fall off (4 to 6), and anywhere on the disk. The first one is on the normal at the mean.
 std::vector<Query> probe(const Surface& surface, const Footprint& footprint, double roughness,
@@ -40,14 +35,14 @@ struct Accuracy {
 Accuracy compare(Evaluator* evaluator, const reference::Oracle& oracle, const Surface& surface,
                  std::vector<std::vector<Query>> probes);
 
-/// The same against a method's own definition, and what it promises to that.
+/// Compares with a method's own definition, by what it promises to that.
 Accuracy compare(Evaluator* evaluator, const Standard& standard, const Surface& surface,
                  std::vector<std::vector<Query>> probes);
-/// The same without a brightest query, which needs a map.
+/// Compares without a brightest query, which needs a map.
 Accuracy compare_probes(Evaluator* evaluator, const Standard& standard,
                         const std::vector<std::vector<Query>>& probes);
 
-/// The same with another reference and what is promised against it at a roughness.
+/// Compares with another reference, by what is promised against it at a roughness.
 using References = std::function<std::vector<double>(const std::vector<Query>&)>;
 Accuracy compare(Evaluator* evaluator, const References& references,
                  const std::function<Promise(double roughness)>& promise, const Surface& surface,

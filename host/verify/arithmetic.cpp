@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "host/base/constants.h"
+#include "host/device/launch.h"
 
 namespace mica::host {
 namespace {
@@ -36,7 +37,7 @@ std::vector<float> by_bits(float low, float high, std::size_t count) {
   return x;
 }
 
-/// The same on both sides of zero, down to low.
+/// By equal steps of the numbers' bits on both sides of zero, down to low.
 std::vector<float> both_signs(float low, float high) {
   std::vector<float> x = by_bits(low, high, kPoints / 2);
   const std::vector<float> positive = x;
@@ -114,22 +115,15 @@ std::vector<Function> functions() {
 }
 
 std::vector<float> run(Device* device, const std::string& name, const Arguments& arguments) {
-  constexpr std::size_t lanes = 16;
   cl::Kernel kernel = device->kernel("probes/arithmetic.cl", name, "");
   const cl::Buffer x = device->upload(arguments.x, "test values"),
                    y = device->upload(arguments.y, "test values");
   std::vector<float> z(arguments.x.size());
   const cl::Buffer output = device->buffer(z.size() * sizeof(float), CL_MEM_WRITE_ONLY, "test results");
-  try {
-    kernel.setArg(0, x);
-    kernel.setArg(1, y);
-    kernel.setArg(2, output);
-    const std::size_t items = device->wave_form() == WaveForm::items ? z.size() : z.size() / lanes;
-    device->queue().enqueueNDRangeKernel(kernel, cl::NullRange, items, lanes);
+  reporting("running " + name, [&] {
+    launch(*device, kernel, launch_size(device->wave_form(), z.size() / kWaveLanes), x, y, output);
     device->queue().enqueueReadBuffer(output, CL_TRUE, 0, z.size() * sizeof(float), z.data());
-  } catch (const cl::Error& error) {
-    throw opencl_error(error, "running " + name);
-  }
+  });
   return z;
 }
 

@@ -5,13 +5,14 @@
 #include <cstddef>
 #include <limits>
 
+#include "host/device/launch.h"
+#include "kernels/images/image_types.h"
+#include "kernels/pyramid/pyramid_types.h"
 #include "kernels/struct_layout.h"
 #include "kernels/types.h"
 
 namespace mica::host {
 namespace {
-
-constexpr std::size_t kLanes = 16;
 
 std::vector<cl_int> host_layout() {
   using namespace device_types;
@@ -29,15 +30,10 @@ std::vector<float> run(Device* device, const std::string& kernel_name, WaveForm 
   const cl::Buffer input = device->upload(x, "test values");
   const cl::Buffer output = device->buffer(x.size() * sizeof(float), CL_MEM_WRITE_ONLY, "test results");
   std::vector<float> y(x.size());
-  try {
-    kernel.setArg(0, input);
-    kernel.setArg(1, output);
-    const std::size_t items = form == WaveForm::items ? x.size() : x.size() / kLanes;
-    device->queue().enqueueNDRangeKernel(kernel, cl::NullRange, items, kLanes);
+  reporting("running " + kernel_name, [&] {
+    launch(*device, kernel, launch_size(form, x.size() / kWaveLanes), input, output);
     device->queue().enqueueReadBuffer(output, CL_TRUE, 0, y.size() * sizeof(float), y.data());
-  } catch (const cl::Error& error) {
-    throw opencl_error(error, "running " + kernel_name);
-  }
+  });
   return y;
 }
 
@@ -83,13 +79,10 @@ Check check_struct_layout(Device* device) {
   cl::Kernel kernel = device->kernel("probes/selftest.cl", "selftest_layout", "");
   const std::size_t bytes = found.size() * sizeof found[0];
   const cl::Buffer output = device->buffer(bytes, CL_MEM_WRITE_ONLY, "the structs' layout");
-  try {
-    kernel.setArg(0, output);
-    device->queue().enqueueNDRangeKernel(kernel, cl::NullRange, 1, 1);
+  reporting("running selftest_layout", [&] {
+    launch(*device, kernel, {1, 1}, output);
     device->queue().enqueueReadBuffer(output, CL_TRUE, 0, bytes, found.data());
-  } catch (const cl::Error& error) {
-    throw opencl_error(error, "running selftest_layout");
-  }
+  });
   Check check{"layout of shared structs", found.size()};
   if (found != expected) check.worst = std::numeric_limits<double>::infinity();
   return check;

@@ -7,9 +7,9 @@
 #include <cmath>
 
 #include "host/base/interrupt.h"
+#include "host/base/random.h"
 #include "host/methods/grid/grid_brdf.h"
 #include "host/reference/glint_draws.h"
-#include "host/surface/random.h"
 
 namespace mica::host {
 namespace {
@@ -30,7 +30,7 @@ GlintsDescription glints_of(Distribution distribution, double alpha, double dens
 std::vector<Query> queries_for(const GlintsDescription& glints, const reference::GlintProcess& process) {
   constexpr std::size_t count = 500;
   std::uint64_t counter = 0;
-  const auto random = [&] { return synthesis::random_unit(1, 0, counter++); };
+  const auto random = [&] { return random_unit(1, 0, counter++); };
   std::vector<Query> queries(count);
   for (Query& query : queries) {
     query.footprint.mean_uv = {random(), random()};
@@ -72,7 +72,8 @@ void check_draws(Device* device, const GlintsDescription& glints, Check* check) 
     const Eigen::Vector3d half(query.half_vector.x(), query.half_vector.y(), cosine);
     lit.push_back({query.footprint, Eigen::Vector3d::UnitZ(),
                    (2 * cosine * half - Eigen::Vector3d::UnitZ()).normalized(), query.roughness});
-    expected.push_back(reference::glint_draw_density(process, query) / 4);  // of h, then of i: o.h = g.h
+    expected.push_back(reference::glint_draw_density(process, query) /
+                       4);  // the density of h, then that of i: o.h = g.h
   }
   const std::vector<BrdfValue> values = GridBrdf(*device, glints).evaluate(lit);
   for (std::size_t n = 0; n < values.size(); ++n)

@@ -4,7 +4,8 @@
 #include <limits>
 
 #include "host/base/constants.h"
-#include "host/surface/random.h"
+#include "host/base/random.h"
+#include "host/surface/texel_footprint.h"
 #include "host/verify/accuracy.h"
 
 namespace mica::host {
@@ -14,7 +15,7 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double random(std::uint64_t n, std::uint64_t stream) {
-  return synthesis::random_unit(0x4a4d, stream, n);
+  return random_unit(0x4a4d, stream, n);
 }
 
 Surface spectrum(Interpolation interpolation) {

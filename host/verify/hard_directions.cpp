@@ -5,16 +5,16 @@
 #include <cmath>
 
 #include "host/base/constants.h"
+#include "host/base/random.h"
 #include "host/methods/patch_brdf.h"
-#include "host/surface/random.h"
-#include "host/verify/accuracy.h"
+#include "host/surface/texel_footprint.h"
 #include "mica/error.h"
 
 namespace mica::host {
 namespace {
 
 double random_number(std::uint64_t n, std::uint64_t stream) {
-  return synthesis::random_unit(0xd1, stream, n);
+  return random_unit(0xd1, stream, n);
 }
 
 Eigen::Vector3d at_cosine(double cosine, double azimuth) {

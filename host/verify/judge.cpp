@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "host/base/error_norms.h"
 #include "host/verify/accuracy.h"
 
 namespace mica::host {
@@ -51,17 +52,14 @@ class ApproximationJudge : public Judge {
   Verdict judge(Evaluator* evaluator, const Surface&, std::vector<std::vector<Query>> probes) const override {
     constexpr double allowed = 0.01;
     Verdict verdict;
-    double squares = 0, reference_squares = 0;
+    RelativeL2 l2;
     for (const std::vector<Query>& probe : probes) {
       const std::vector<float> densities = evaluator->evaluate(probe);
       const std::vector<reference::OracleResult> references = oracle_.evaluate(probe);
-      for (std::size_t n = 0; n < probe.size(); ++n) {
-        squares += std::pow(densities[n] - references[n].density, 2);
-        reference_squares += std::pow(references[n].density, 2);
-      }
+      for (std::size_t n = 0; n < probe.size(); ++n) l2.add(densities[n], references[n].density);
       verdict.queries += probe.size();
     }
-    const double error = squares == 0 ? 0 : std::sqrt(squares / reference_squares);
+    const double error = l2.value();
     verdict.worst = error / allowed;
     verdict.limitation = fmt::format("approximates the map: relative L2 of {:.2g}% here", 100 * error);
     return verdict;

@@ -4,9 +4,11 @@
 
 #include <cmath>
 
+#include "host/base/error_norms.h"
 #include "host/base/interrupt.h"
 #include "host/methods/pyramid/pyramid_painter.h"
 #include "host/reference/oracle.h"
+#include "host/surface/texel_footprint.h"
 #include "host/verify/accuracy.h"
 
 namespace mica::host {
@@ -25,12 +27,9 @@ Check compared(const std::string& name, const Surface& surface, const std::vecto
                const std::vector<float>& densities) {
   check_interrupt();
   const std::vector<reference::OracleResult> expected = reference::Oracle(surface, 1e-4).evaluate(queries);
-  double squares = 0, references = 0;
-  for (std::size_t n = 0; n < queries.size(); ++n) {
-    squares += std::pow(densities[n] - expected[n].density, 2);
-    references += std::pow(expected[n].density, 2);
-  }
-  return {name, queries.size(), std::sqrt(squares / references) / kAllowed};
+  RelativeL2 error;
+  for (std::size_t n = 0; n < queries.size(); ++n) error.add(densities[n], expected[n].density);
+  return {name, queries.size(), error.value() / kAllowed};
 }
 
 /// Half vectors near the normals under some footprints of one size.

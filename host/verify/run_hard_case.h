@@ -25,7 +25,7 @@ struct HardResult {
   double worst = 0;             ///< error of those that were compared, in units of what is allowed
   std::uint64_t evaluated = 0;  ///< answers that were looked at, each of them
   std::uint64_t compared = 0;   ///< those of them that were set against a reference in double precision
-  std::string reason;           ///< of all outcomes but the first
+  std::string reason;           ///< why; empty where the bound was kept
 };
 
 /// How many questions of a case are asked. Costly ones are asked less often.
@@ -44,7 +44,7 @@ struct HardEffort {
 std::vector<HardResult> run_hard_case(const HardCase& hard_case, Device& device, const HardEffort& effort,
                                       const MethodRegistry& methods = MethodRegistry::builtin());
 
-/// The same for one evaluator on the case's surface.
+/// Runs a case for one evaluator on the case's surface.
 HardResult run_trial(const HardCase& hard_case, const Surface& surface, Evaluator* evaluator,
                      const Judge& judge, const HardEffort& effort);
 

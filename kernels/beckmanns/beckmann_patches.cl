@@ -34,7 +34,7 @@ typedef struct {
 typedef struct {
   lobe_sum density;
   lobe_view seen, lit;    // by view and light, of the leaf that is to be added next
-  wave_float q_position;  // of its lobes
+  wave_float q_position;  // whitened squared distance of that leaf's lobes
   wave_float view, light, projected;
   int all;  // lobes are visited
 } leaf_results;

@@ -12,7 +12,7 @@
 #include "wave/wave.h"
 
 typedef struct {
-  wave_float offset_x, offset_y;  // of the mean from base
+  wave_float offset_x, offset_y;  // from base to the mean
   wave_float spread_xx, spread_yx, spread_yy;
   float base_x, base_y;
 } lobe_leaf;

@@ -8,7 +8,7 @@
 #include "wave/wave.h"
 
 typedef struct {
-  oriented_boxes boxes;   // of slopes
+  oriented_boxes boxes;   // boxes around the lobes' slopes
   wave_float w;           // 1 + |p|^2, at most
   wave_float q_position;  // whitened squared distance of their centres, at least
 } lobe_children;

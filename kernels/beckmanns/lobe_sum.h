@@ -24,7 +24,7 @@ typedef struct {
   int leaves;
   lobe_wave met;
   slice_wave sliced;
-  wave_float weight;  // of what is sliced
+  wave_float weight;  // weight of what is sliced
   wave_float sum;
 } lobe_sum;
 

@@ -12,7 +12,7 @@
 
 #include "wave/wave.h"
 
-#define CAVITY_LEAST_COSINE 1e-6f  // of a facet, squared: steeper ones count as vertical
+#define CAVITY_LEAST_COSINE 1e-6f  // squared cosine of a facet: steeper ones count as vertical
 
 // E_1 of a lane's facet (s, t) for a view: what leaves after one bounce. Facets off the disk let nothing go.
 // [Che19] Eq. 8

@@ -18,13 +18,13 @@ static inline wave_uint glint_mix(wave_uint x) {
   return x ^ (x >> 16);
 }
 
-// Of the spatial cell (i, j); i and j count modulo 2^31.
+// The key of the spatial cell (i, j); i and j count modulo 2^31.
 static inline wave_uint glint_spatial_key(wave_uint i, wave_uint j, wave_uint level, wave_uint seed) {
   const wave_uint row = glint_mix((j & 0x7fffffffu) * 0x9e3779b1u + level * 0x85ebca77u + seed);
   return glint_mix(row + (i & 0x7fffffffu) * 0xc2b2ae3du);
 }
 
-// Of the angular cell (k, l).
+// The key of the angular cell (k, l).
 static inline wave_uint glint_angular_key(wave_uint k, wave_uint l) {
   return glint_mix(l * 0x27d4eb2fu + k * 0x165667b1u);
 }

@@ -18,7 +18,8 @@
 #endif
 
 #define INVERSE_TWO_PI 0.159154943f
-#define LEAST_POWER -80.0f  // of two: what is less counts as zero, so that no product is a (slow) denormal
+#define LEAST_POWER \
+  -80.0f  // a power of two: what is less counts as zero, so that no product is a (slow) denormal
 #define ROULETTE_SOFTNESS 0.1f  // epsilon of Eq. 8
 
 // R(r, w) of Eq. 8: whether the glint with the number r is there at the weight w of its level.
@@ -38,7 +39,7 @@ static inline wave_float presence_of(wave_float r, wave_float share, wave_float 
 // A footprint and a direction on one level. Positions are relative to the lower left corner of the lowest of
 // the 2x2 cells around them, 0.5 to 1.5 cells away.
 typedef struct {
-  wave_uint spatial_keys[4];                              // of the spatial cells, x first
+  wave_uint spatial_keys[4];                              // keys of the spatial cells, x first
   wave_float x, y;                                        // mean of the footprint
   wave_float w1x, w1y, w2x, w2y;                          // its whitening
   wave_int k, l;                                          // lowest angular cell
@@ -46,8 +47,8 @@ typedef struct {
   wave_float inverse_a, inverse_b;                        // 1 / standard deviation of a lobe
   wave_float cells;                                       // angular cells a side of the unit square
   wave_float center_a, center_b;                          // direction less the centre of the disk, in cells
-  wave_float weight;                                      // of the level
-  wave_float share, presence, inverse_width, brightness;  // of the process, where MICA_GLINT_ROULETTE
+  wave_float weight;                                      // weight of the level
+  wave_float share, presence, inverse_width, brightness;  // what the process has, where MICA_GLINT_ROULETTE
 } glint_level;
 
 typedef struct {

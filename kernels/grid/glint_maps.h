@@ -51,7 +51,7 @@ static inline wave_float mean_of_exp_minus(wave_float x, wave_float exp_minus_x)
 
 static inline glint_disk_point glint_to_disk(wave_float s, wave_float t, wave_float inverse_alpha_x,
                                              wave_float inverse_alpha_y) {
-  const wave_float cos2 = 1.0f - fma(s, s, t * t);  // of the angle from the surface's normal
+  const wave_float cos2 = 1.0f - fma(s, s, t * t);  // squared cosine of the angle from the surface's normal
   const wave_float x = s * inverse_alpha_x, y = t * inverse_alpha_y;
   const wave_float scale = INVERSE_PI * inverse_alpha_x * inverse_alpha_y, zero = 0.0f;
   wave_float stretch, density;
@@ -64,7 +64,7 @@ static inline glint_disk_point glint_to_disk(wave_float s, wave_float t, wave_fl
   stretch = mean * wave_rsqrt(max(mean, 1e-30f)) * inverse_cos;  // B_1^-1 after B_2^-1
   density = scale * e * inverse_cos2 * inverse_cos2;
 #else
-  const wave_float length2 = fma(x, x, fma(y, y, max(cos2, 0.0f)));  // of M^T h, Eq. 6
+  const wave_float length2 = fma(x, x, fma(y, y, max(cos2, 0.0f)));  // squared length of M^T h, Eq. 6
   stretch = wave_rsqrt(length2);
   const wave_float inverse_length2 = stretch * stretch;
   density = scale * inverse_length2 * inverse_length2;

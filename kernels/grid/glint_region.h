@@ -38,7 +38,7 @@ static inline wave_float lobe_share(wave_float low, wave_float high, wave_float 
 // A glint of a region. Angles are relative to the direction that the level was placed by.
 typedef struct {
   wave_float a, b, inverse_a, inverse_b;
-  wave_float strength;  // of its lobe: whether it is there, and its place in the footprint
+  wave_float strength;  // strength of its lobe: whether it is there, and its place in the footprint
 } region_glint;
 
 static inline region_glint glint_of_region(private const glint_level* g, glint_lobe_shape shape, int angular,

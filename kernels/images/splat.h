@@ -17,7 +17,7 @@ typedef struct {
   global float* image;
   WAVE_SHARED float* records;
   mica_image_window window;
-  int first_row, last_row;  // of pixels
+  int first_row, last_row;  // rows of pixels
 } splat_target;
 
 // Band `index` of all images' bands.

@@ -8,7 +8,7 @@
 
 typedef struct {
   wave_float axis_x, axis_y;                                // unit
-  wave_float along_min, along_max, across_min, across_max;  // of the means
+  wave_float along_min, along_max, across_min, across_max;  // bounds of the means
   wave_float spread_along, spread_across;                   // standard deviations, at most, in units of nodes
   wave_int present;                                         // a child may lie outside of the map
 } oriented_boxes;

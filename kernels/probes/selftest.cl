@@ -1,6 +1,8 @@
 // What `mica selftest` asks of a device: the layout of the structs that it shares with the host, and its
 // arithmetic in the special functions of the other kernels.
 
+#include "images/image_types.h"
+#include "pyramid/pyramid_types.h"
 #include "struct_layout.h"
 #include "types.h"
 #include "wave/gaussian.h"

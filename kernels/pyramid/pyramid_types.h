@@ -71,7 +71,7 @@ typedef struct {
   mica_map_query map;
   MICA_FLOAT cov_xx, cov_xy, cov_yy;  // the footprint's covariance, texels^2
   MICA_FLOAT inverse_minor_variance;  // 1 / its smaller eigenvalue
-  MICA_INT group_size;                // of the level that it reads: texels a side
+  MICA_INT group_size;                // texels a side of a group of the level that it reads
 } mica_pyramid_query;
 
 #ifdef __cplusplus

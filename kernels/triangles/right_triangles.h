@@ -10,7 +10,7 @@
 
 #include "wave/gaussian.h"
 #include "wave/quadrature.h"
-#include "wave/wave.h"
+#include "wave/wave_list.h"
 
 // 1: integrals return the floating-point operations that they take instead (a fused multiply-add is two); the
 // benchmark's share of the device's peak is made of it.
@@ -42,7 +42,7 @@ static inline void accumulate(private accumulator* a, wave_float x) {
 #define RIGHT_RECORDS (RIGHT_FIELDS * WAVE_LIST)
 typedef struct {
   accumulator total;
-  wave_list short_ones, long_ones;  // of right_triangles, by their range
+  wave_list short_ones, long_ones;  // right triangles, by their range
 } integrator;
 
 // y = y_middle + y_slope * node in the scale of gaussian_exp2, the hypotenuse in that of

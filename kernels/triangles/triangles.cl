@@ -8,7 +8,7 @@
 #include "triangles/right_triangles.h"
 #include "triangles/triangle_integral.h"
 #include "types.h"
-#include "wave/wave.h"
+#include "wave/wave_list.h"
 
 // 0: a constant texel, 1: two triangles a quad, 2: Catmull-Rom, 4x4 sub-quads of two triangles each.
 #ifndef MICA_INTERPOLATION
@@ -105,6 +105,6 @@ kernel void triangles(global const mica_map_query* restrict queries, int query_c
   if (gathered.list.count) integrate_first_quads(query, &gathered.list, &gathered.out, scratch);
   integrate_rest(&gathered.out, scratch);
   const float sum = wave_sum(gathered.out.total.sum, scratch);
-  const float area = QUAD_SIZE * QUAD_SIZE;  // of a quad: the integrals are over unit triangles
+  const float area = QUAD_SIZE * QUAD_SIZE;  // area of a quad: the integrals are over unit triangles
   density[query->slot] = MICA_COUNT_FLOPS ? sum : query->scale * area * sum;
 }

@@ -99,7 +99,7 @@ static inline void wave_pack(local float* list, uint bits, wave_float value) {
 typedef float16 wave_float;
 typedef int16 wave_int;
 typedef uint16 wave_uint;
-// The same at any address: some compilers split vload16 and vstore16 into quarters.
+// Vectors at any address: some compilers split vload16 and vstore16 into quarters.
 typedef float16 wave_float_anywhere __attribute__((aligned(4)));
 typedef int4 wave_quarter_int_anywhere __attribute__((aligned(4)));
 typedef int16 wave_int_anywhere __attribute__((aligned(4)));
@@ -115,7 +115,7 @@ typedef char16 wave_char_anywhere __attribute__((aligned(1)));
 #define wave_from_bits(x) as_float16(x)
 #define wave_to_uint(x) as_uint16(x)
 #define wave_uint_to_float(x) \
-  convert_float16(as_int16(x))  // of values below 2^31, whose conversion is cheaper
+  convert_float16(as_int16(x))  // right for values below 2^31, whose conversion is cheaper
 #define wave_mask(condition) (condition)
 
 static inline wave_float wave_select(wave_float otherwise, wave_float chosen, wave_int mask) {
@@ -163,7 +163,7 @@ static inline wave_float wave_rsqrt(wave_float x) {
 #endif
 }
 
-// The same with a relative error of 6e-5.
+// 1 / sqrt(x) of a normal number, relative error 6e-5.
 static inline wave_float wave_rough_rsqrt(wave_float x) {
 #if MICA_AVX512
   return __builtin_ia32_rsqrt14ps512_mask(x, x, (ushort)0xffff);
@@ -244,39 +244,6 @@ static inline void wave_load_quads(global const int* pointer, int row, private w
   *v01 = shuffle2(*v00, (int16)(row_0, row_0, row_0, row_0), next_row);
   *v11 = shuffle2(*v10, (int16)(row_1, row_1, row_1, row_1), next_row);
 #endif
-}
-
-// A list of records of several floats, taken off a wave at a time. Field k of record n is records[k *
-// WAVE_LIST + n].
-#define WAVE_LIST (2 * WAVE_LANES)
-typedef struct {
-  WAVE_SHARED float* records;
-  int count;  // less than a wave between appends
-} wave_list;
-
-// Appending the lanes in `bits` is packing every field, then counting once.
-static inline void wave_list_pack(wave_list list, int field, uint bits, wave_float value) {
-  wave_pack(list.records + field * WAVE_LIST + list.count, bits, value);
-}
-static inline void wave_list_count(private wave_list* list, uint bits) {
-  wave_list_sync();
-  list->count += (int)popcount(bits);
-}
-
-// A field of the first sixteen records; lanes past the count hold anything.
-static inline wave_float wave_list_field(wave_list list, int field) {
-  return wave_list_load(list.records + field * WAVE_LIST);
-}
-
-// Drops the first sixteen records.
-static inline void wave_list_drop(private wave_list* list, int fields) {
-  wave_list_sync();
-  for (int field = 0; field < fields; ++field) {
-    const wave_float rest = wave_list_load(list->records + field * WAVE_LIST + WAVE_LANES);
-    wave_list_store(list->records + field * WAVE_LIST, rest);
-  }
-  wave_list_sync();
-  list->count = max(list->count - WAVE_LANES, 0);
 }
 
 #endif  // MICA_WAVE_H

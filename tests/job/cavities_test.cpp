@@ -9,7 +9,7 @@ using test::least_job;
 using test::replaced;
 
 std::string with(const std::string& keys) {
-  return replaced(least_job, "surface = \"bumps\"\n",
+  return replaced(kLeastJob, "surface = \"bumps\"\n",
                   "surface = \"bumps\"\nndf = \"cavities\"\n" + keys + "\n");
 }
 
@@ -31,7 +31,7 @@ TEST(CavitiesInAJob, RefuseWhatTheyDoNotTake) {
     ASSERT_EQ(issues.size(), 1u) << keys;
     EXPECT_EQ(issues[0].line, 8) << keys;
   }
-  EXPECT_EQ(folder.issues(replaced(least_job, "surface = \"bumps\"\n", "surface = \"bumps\"\nspacing = 1\n"))
+  EXPECT_EQ(folder.issues(replaced(kLeastJob, "surface = \"bumps\"\n", "surface = \"bumps\"\nspacing = 1\n"))
                 .size(),
             1u);
 }

@@ -43,7 +43,7 @@ TEST(ErrorLists, ReportEverythingInTheOrderOfTheFile) {
 
 TEST(ErrorLists, FileComesBeforeOverrides) {
   const JobFolder folder;
-  const auto issues = folder.issues(least_job + "[audit]\nsamples = -1\n", {"image.width=0", "nonsense"});
+  const auto issues = folder.issues(kLeastJob + "[audit]\nsamples = -1\n", {"image.width=0", "nonsense"});
   ASSERT_EQ(issues.size(), 3u);
   EXPECT_EQ(issues[0].file, folder.path("job.toml"));
   EXPECT_EQ(issues[0].line, 16);
@@ -60,7 +60,7 @@ TEST(ErrorLists, EmptyJobNamesWhatItLacks) {
 
 TEST(ErrorLists, ColumnsCountCodePoints) {
   const JobFolder folder;
-  const auto issues = folder.issues("image = { \"größe\" = 1, width = 0 }\n" + least_job);
+  const auto issues = folder.issues("image = { \"größe\" = 1, width = 0 }\n" + kLeastJob);
   ASSERT_EQ(issues.size(), 2u);
   EXPECT_EQ(issues[0].column, 11);
   EXPECT_EQ(issues[1].column, 32);
@@ -68,7 +68,7 @@ TEST(ErrorLists, ColumnsCountCodePoints) {
 
 TEST(ErrorLists, ControlCharactersDoNotReachTheTerminal) {
   const JobFolder folder;
-  const auto issues = folder.issues(replaced(least_job, "\"gold\"", "\"\\u001b[31m\""));
+  const auto issues = folder.issues(replaced(kLeastJob, "\"gold\"", "\"\\u001b[31m\""));
   ASSERT_EQ(issues.size(), 1u);
   EXPECT_EQ(issues[0].message.find('\x1b'), std::string::npos);
   EXPECT_NE(issues[0].message.find("\\x1b[31m"), std::string::npos) << issues[0].message;
@@ -78,7 +78,7 @@ TEST(ErrorLists, LongTextIsCutBetweenCharacters) {
   const JobFolder folder;
   std::string name = "x";
   for (int i = 0; i < 500; ++i) name += "é";
-  const auto issues = folder.issues(replaced(least_job, "\"gold\"", '"' + name + '"'));
+  const auto issues = folder.issues(replaced(kLeastJob, "\"gold\"", '"' + name + '"'));
   ASSERT_EQ(issues.size(), 1u);
   EXPECT_NE(issues[0].message.find("é...\""), std::string::npos) << issues[0].message;
 }
@@ -116,7 +116,7 @@ TEST(SyntaxErrors, AreReportedBesideThoseOfOverrides) {
 TEST(Files, MissingMapIsAnIssueOfTheJob) {
   const JobFolder folder;
   const auto issues =
-      folder.issues(replaced(least_job, "generate = \"spectrum\"", "file = \"maps/none.exr\""));
+      folder.issues(replaced(kLeastJob, "generate = \"spectrum\"", "file = \"maps/none.exr\""));
   ASSERT_EQ(issues.size(), 1u);
   EXPECT_EQ(issues[0].line, 3);
   EXPECT_EQ(issues[0].column, 8);
@@ -127,7 +127,7 @@ TEST(Files, MissingMapIsAnIssueOfTheJob) {
 TEST(Files, FolderIsNoMeshOrBackground) {
   const JobFolder folder;
   std::filesystem::create_directories(folder.path("maps"));
-  const auto issues = folder.issues(replaced(least_job, "\"sphere\"", "\"mesh\"\nfile = \"maps\"") +
+  const auto issues = folder.issues(replaced(kLeastJob, "\"sphere\"", "\"mesh\"\nfile = \"maps\"") +
                                     "[background]\ncolor = [0, 0, 0]\nimage = \"maps\"\n");
   ASSERT_EQ(issues.size(), 3u);
   EXPECT_EQ(issues[0].message,
@@ -140,12 +140,12 @@ TEST(Files, HeightScaleNeedsHeights) {
   const JobFolder folder;
   folder.write("map.png", "x");
   const std::string map = "file = \"map.png\"\nheight_scale = 2\n";
-  const auto issues = folder.issues(replaced(least_job, "generate = \"spectrum\"", map));
+  const auto issues = folder.issues(replaced(kLeastJob, "generate = \"spectrum\"", map));
   ASSERT_EQ(issues.size(), 1u);
   EXPECT_EQ(issues[0].message,
             "surface.bumps.height_scale: found a scale of heights; expected encoding = \"height\" with it");
   const std::string heights = map + "encoding = \"height\"\n";
-  EXPECT_TRUE(folder.issues(replaced(least_job, "generate = \"spectrum\"", heights)).empty());
+  EXPECT_TRUE(folder.issues(replaced(kLeastJob, "generate = \"spectrum\"", heights)).empty());
 }
 
 TEST(Files, UnreadableJobIsAFileError) {

@@ -11,7 +11,7 @@ struct Mistake {
 class Errors : public testing::TestWithParam<Mistake> {};
 
 TEST_P(Errors, NamePlaceFindingAndExpectation) {
-  std::string text = replaced(least_job, GetParam().from, GetParam().to);
+  std::string text = replaced(kLeastJob, GetParam().from, GetParam().to);
   const std::size_t mark = text.find('@');
   ASSERT_NE(mark, std::string::npos);
   text.erase(mark, 1);
@@ -30,7 +30,7 @@ TEST_P(Errors, NamePlaceFindingAndExpectation) {
 
 const char* const surface_keys = "resolution, rms_slope, correlation, seed";
 
-const std::vector<Mistake> unknown_keys = {
+const std::vector<Mistake> kUnknownKeys = {
     {"", "[image]\n  @widht = 3",
      "image.widht: found an unknown key; expected one of: width, height, subpixels, samples, max_bounces, "
      "aovs, exposure, tone_map "
@@ -52,9 +52,9 @@ const std::vector<Mistake> unknown_keys = {
      "specular, "
      "diffuse, coat"},
 };
-INSTANTIATE_TEST_SUITE_P(UnknownKey, Errors, testing::ValuesIn(unknown_keys));
+INSTANTIATE_TEST_SUITE_P(UnknownKey, Errors, testing::ValuesIn(kUnknownKeys));
 
-const std::vector<Mistake> wrong_types = {
+const std::vector<Mistake> kWrongTypes = {
     {"", "[image]\nwidth = @\"wide\"",
      "image.width: found \"wide\" (a string); expected an integer in [1, 16384]"},
     {"", "[image]\nwidth = @4.0", "image.width: found 4 (a float); expected an integer in [1, 16384]"},
@@ -82,9 +82,9 @@ const std::vector<Mistake> wrong_types = {
     {"[[light]]", "@[light]", "light: found a table; expected an array of tables, each headed [[light]]"},
     {"", "seed = @\"x\"", "seed: found \"x\" (a string); expected an integer from 0 below 2^63"},
 };
-INSTANTIATE_TEST_SUITE_P(WrongType, Errors, testing::ValuesIn(wrong_types));
+INSTANTIATE_TEST_SUITE_P(WrongType, Errors, testing::ValuesIn(kWrongTypes));
 
-const std::vector<Mistake> missing_keys = {
+const std::vector<Mistake> kMissingKeys = {
     {"[surface.bumps]\ngenerate = \"spectrum\"", "@[surface.bumps]",
      "surface.bumps: found neither of \"file\" and \"generate\"; expected exactly one"},
     {"[material.gold]\nsurface = \"bumps\"", "@[material.gold]",
@@ -108,9 +108,9 @@ const std::vector<Mistake> missing_keys = {
      "material.gold.specular: found no key \"k\"; expected it beside \"eta\""},
 };
 
-INSTANTIATE_TEST_SUITE_P(MissingKey, Errors, testing::ValuesIn(missing_keys));
+INSTANTIATE_TEST_SUITE_P(MissingKey, Errors, testing::ValuesIn(kMissingKeys));
 
-const std::vector<Mistake> out_of_range = {
+const std::vector<Mistake> kOutOfRange = {
     {"", "[image]\nwidth = @0", "image.width: found 0; expected an integer in [1, 16384]"},
     {"", "[image]\nwidth = @99999999999",
      "image.width: found 99999999999; expected an integer in [1, 16384]"},
@@ -148,7 +148,7 @@ const std::vector<Mistake> out_of_range = {
 };
 
 /// Mistakes in kinds of surfaces; \"bumps\" of the least job becomes that kind.
-const std::vector<Mistake> surface_mistakes = {
+const std::vector<Mistake> kSurfaceMistakes = {
     {"\"spectrum\"", "\"brushed\"\nresolution = 64\ncorrelation_across = @65",
      "surface.bumps.correlation_across: found 65; expected a number in [0.001, 64]"},
     {"\"spectrum\"", "\"scratches\"\nlength = 10\nwidth = @11",
@@ -179,11 +179,11 @@ const std::vector<Mistake> surface_mistakes = {
      "surface.bumps.layers.0: found no key \"surface\"; expected the name of a surface that is not made of "
      "layers"},
 };
-INSTANTIATE_TEST_SUITE_P(Surfaces, Errors, testing::ValuesIn(surface_mistakes));
+INSTANTIATE_TEST_SUITE_P(Surfaces, Errors, testing::ValuesIn(kSurfaceMistakes));
 
-INSTANTIATE_TEST_SUITE_P(OutOfRange, Errors, testing::ValuesIn(out_of_range));
+INSTANTIATE_TEST_SUITE_P(OutOfRange, Errors, testing::ValuesIn(kOutOfRange));
 
-const std::vector<Mistake> wrong_words = {
+const std::vector<Mistake> kWrongWords = {
     {"\"spectrum\"", "@\"spectrun\"",
      "surface.bumps.generate: found \"spectrun\" (a string); expected one of: spectrum, flakes, brushed, "
      "scratches, "
@@ -213,9 +213,9 @@ const std::vector<Mistake> wrong_words = {
     {"\"bumps\"", "@\"\"",
      "material.gold.surface: found \"\" (a string); expected a string that is not empty"},
 };
-INSTANTIATE_TEST_SUITE_P(WrongWord, Errors, testing::ValuesIn(wrong_words));
+INSTANTIATE_TEST_SUITE_P(WrongWord, Errors, testing::ValuesIn(kWrongWords));
 
-const std::vector<Mistake> contradictions = {
+const std::vector<Mistake> kContradictions = {
     {"[surface.bumps]", "@[surface.bumps]\nfile = \"x.png\"",
      "surface.bumps: found both of \"file\" and \"generate\"; expected exactly one"},
     {"", "[camera]\nposition = [1, 2, 3]\nlook_at = @[1, 2, 3]",
@@ -231,7 +231,7 @@ const std::vector<Mistake> contradictions = {
     {"\"bumps\"", "\"bumps\"\nspecular = @{}",
      "material.gold.specular: found no single kind of reflection; expected { eta, k }, { ior } or { color }"},
 };
-INSTANTIATE_TEST_SUITE_P(Contradiction, Errors, testing::ValuesIn(contradictions));
+INSTANTIATE_TEST_SUITE_P(Contradiction, Errors, testing::ValuesIn(kContradictions));
 
 }  // namespace
 }  // namespace mica::host::test::errors_test

@@ -13,7 +13,7 @@ struct FramesOfAJob : testing::Test {
 };
 
 TEST_F(FramesOfAJob, AreOneUnlessSaid) {
-  const Job job = folder.load(least_job);
+  const Job job = folder.load(kLeastJob);
   EXPECT_FALSE(job.frames.given);
   EXPECT_EQ(job.frames.first, 0);
   EXPECT_EQ(job.frames.last, 0);
@@ -21,7 +21,7 @@ TEST_F(FramesOfAJob, AreOneUnlessSaid) {
 
 TEST_F(FramesOfAJob, AreRead) {
   const Job job =
-      folder.load(least_job +
+      folder.load(kLeastJob +
                   "keys = [{ frame = 3, position = [1, 2, 3] }, { frame = 7.5, intensity = [1, 1, 1] }]\n"
                   "[frames]\nrange = [3, 9]\nrate = 30\n"
                   "[camera]\nfov = 33\nkeys = [{ frame = 0 }, { frame = 9, fov = 44 }]\n");
@@ -40,26 +40,26 @@ TEST_F(FramesOfAJob, AreRead) {
 }
 
 TEST_F(FramesOfAJob, RefuseWhatMakesNoSense) {
-  EXPECT_EQ(message_of(least_job + "[frames]\nrate = 3\n").rfind("frames: found no key \"range\"", 0), 0u);
-  EXPECT_EQ(message_of(least_job + "[frames]\nrange = [4, 3]\n").rfind("frames.range: found [4, 3]", 0), 0u);
-  EXPECT_EQ(message_of(least_job + "[frames]\nrange = [0, 1.5]\n").rfind("frames.range: found [0, 1.5]", 0),
+  EXPECT_EQ(message_of(kLeastJob + "[frames]\nrate = 3\n").rfind("frames: found no key \"range\"", 0), 0u);
+  EXPECT_EQ(message_of(kLeastJob + "[frames]\nrange = [4, 3]\n").rfind("frames.range: found [4, 3]", 0), 0u);
+  EXPECT_EQ(message_of(kLeastJob + "[frames]\nrange = [0, 1.5]\n").rfind("frames.range: found [0, 1.5]", 0),
             0u);
-  EXPECT_EQ(message_of(least_job + "keys = [{ frame = 3 }, { frame = 3 }]\n")
+  EXPECT_EQ(message_of(kLeastJob + "keys = [{ frame = 3 }, { frame = 3 }]\n")
                 .rfind("light.0.keys.1.frame: found 3 after 3", 0),
             0u);
-  EXPECT_EQ(message_of(least_job + "keys = [{ position = [0, 0, 1] }]\n")
+  EXPECT_EQ(message_of(kLeastJob + "keys = [{ position = [0, 0, 1] }]\n")
                 .rfind("light.0.keys.0: found no key \"frame\"", 0),
             0u);
-  EXPECT_EQ(message_of(least_job + "keys = [{ frame = 0, color = 1 }]\n")
+  EXPECT_EQ(message_of(kLeastJob + "keys = [{ frame = 0, color = 1 }]\n")
                 .rfind("light.0.keys.0.color: found an unknown key", 0),
             0u);
 }
 
 TEST_F(FramesOfAJob, ToneMapsHaveNames) {
-  EXPECT_EQ(folder.load("image = { tone_map = \"filmic\" }\n" + least_job).image.tone_map, ToneMap::filmic);
-  EXPECT_EQ(folder.load(least_job).image.tone_map, ToneMap::shoulder);
+  EXPECT_EQ(folder.load("image = { tone_map = \"filmic\" }\n" + kLeastJob).image.tone_map, ToneMap::filmic);
+  EXPECT_EQ(folder.load(kLeastJob).image.tone_map, ToneMap::shoulder);
   EXPECT_EQ(
-      message_of("image = { tone_map = \"film\" }\n" + least_job).rfind("image.tone_map: found \"film\"", 0),
+      message_of("image = { tone_map = \"film\" }\n" + kLeastJob).rfind("image.tone_map: found \"film\"", 0),
       0u);
 }
 

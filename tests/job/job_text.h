@@ -53,7 +53,7 @@ class JobFolder {
 };
 
 /// A job with nothing but what every job needs.
-inline const std::string least_job = R"(
+inline const std::string kLeastJob = R"(
 [surface.bumps]
 generate = "spectrum"
 

@@ -5,7 +5,7 @@ namespace {
 
 TEST(Overrides, ReplaceAndAddValues) {
   const JobFolder folder;
-  const Job job = folder.load("[image]\nwidth = 10\n" + least_job,
+  const Job job = folder.load("[image]\nwidth = 10\n" + kLeastJob,
                               {"image.width=20", "image.height = 30", "seed=5", "camera.fov=60.5"});
   EXPECT_EQ(job.image.width, 20);
   EXPECT_EQ(job.image.height, 30);
@@ -14,12 +14,12 @@ TEST(Overrides, ReplaceAndAddValues) {
 }
 
 TEST(Overrides, TheLastOneWins) {
-  EXPECT_EQ(JobFolder().load(least_job, {"seed=5", "seed=6"}).seed, 6u);
+  EXPECT_EQ(JobFolder().load(kLeastJob, {"seed=5", "seed=6"}).seed, 6u);
 }
 
 TEST(Overrides, IndexArraysFromZero) {
   const JobFolder folder;
-  const std::string two_lights = least_job + "[[light]]\ntype = \"point\"\nposition = [1, 1, 1]\n";
+  const std::string two_lights = kLeastJob + "[[light]]\ntype = \"point\"\nposition = [1, 1, 1]\n";
   const Job job = folder.load(two_lights, {"light.1.position=[7, 8, 9]", "light.0.position.2=5"});
   EXPECT_EQ(std::get<PointLight>(job.scene.lights[0]).position, Eigen::Vector3d(0, 0, 5));
   EXPECT_EQ(std::get<PointLight>(job.scene.lights[1]).position, Eigen::Vector3d(7, 8, 9));
@@ -28,7 +28,7 @@ TEST(Overrides, IndexArraysFromZero) {
 TEST(Overrides, TakeBareWordsAsStrings) {
   const JobFolder folder;
   folder.write("a-1.exr", "x");
-  const Job job = folder.load(least_job, {"surface.bumps.interpolation=bicubic", "background.image=a-1.exr"});
+  const Job job = folder.load(kLeastJob, {"surface.bumps.interpolation=bicubic", "background.image=a-1.exr"});
   EXPECT_EQ(job.surfaces[0].interpolation, Interpolation::bicubic);
   EXPECT_EQ(job.scene.background.path, folder.path("a-1.exr"));
 }
@@ -36,13 +36,13 @@ TEST(Overrides, TakeBareWordsAsStrings) {
 TEST(Overrides, TakeQuotedKeysAndValues) {
   const JobFolder folder;
   const Job job =
-      folder.load(least_job, {"surface.\"a=b.c\".generate=\"flakes\"", "material.gold.surface='a=b.c'"});
+      folder.load(kLeastJob, {"surface.\"a=b.c\".generate=\"flakes\"", "material.gold.surface='a=b.c'"});
   EXPECT_EQ(job.scene.materials[0].surface, "a=b.c");
 }
 
 TEST(Overrides, ReplaceInlineTablesAsAWhole) {
   const JobFolder folder;
-  const std::string glass = replaced(least_job, "\"bumps\"", "\"bumps\"\nspecular = { ior = 1.5 }");
+  const std::string glass = replaced(kLeastJob, "\"bumps\"", "\"bumps\"\nspecular = { ior = 1.5 }");
   const Job job = folder.load(glass, {"material.gold.specular={ color = [1, 0, 0] }"});
   EXPECT_EQ(std::get<ColorFresnel>(job.scene.materials[0].specular).color, Color(1, 0, 0));
   EXPECT_EQ(std::get<DielectricFresnel>(
@@ -52,7 +52,7 @@ TEST(Overrides, ReplaceInlineTablesAsAWhole) {
 }
 
 TEST(Overrides, RepairTheFile) {
-  EXPECT_TRUE(JobFolder().issues("[image]\nwidth = 0\n" + least_job, {"image.width=1"}).empty());
+  EXPECT_TRUE(JobFolder().issues("[image]\nwidth = 0\n" + kLeastJob, {"image.width=1"}).empty());
 }
 
 struct WrongOverride {
@@ -63,7 +63,7 @@ class WrongOverrides : public testing::TestWithParam<WrongOverride> {};
 
 TEST_P(WrongOverrides, NameThemselvesAsThePlace) {
   const JobFolder folder;
-  const auto issues = folder.issues(least_job, {GetParam().text});
+  const auto issues = folder.issues(kLeastJob, {GetParam().text});
   ASSERT_EQ(issues.size(), 1u) << (issues.empty() ? "" : JobError(issues).what());
   EXPECT_EQ(issues[0].file, "--set " + GetParam().text);
   EXPECT_EQ(issues[0].line, 0);
@@ -71,16 +71,16 @@ TEST_P(WrongOverrides, NameThemselvesAsThePlace) {
   EXPECT_STREQ(JobError(issues).what(), ("--set " + GetParam().text + ": " + GetParam().message).c_str());
 }
 
-const std::string no_assignment = "found no assignment; expected key.path=value on one line";
+const std::string kNoAssignment = "found no assignment; expected key.path=value on one line";
 
-const std::vector<WrongOverride> wrong_overrides = {
-    {"", no_assignment},
-    {"image.width", no_assignment},
-    {"=3", no_assignment},
-    {"image.width=", no_assignment},
-    {"[image]=3", no_assignment},
-    {"# seed=3", no_assignment},
-    {"'seed=3", no_assignment},
+const std::vector<WrongOverride> kWrongOverrides = {
+    {"", kNoAssignment},
+    {"image.width", kNoAssignment},
+    {"=3", kNoAssignment},
+    {"image.width=", kNoAssignment},
+    {"[image]=3", kNoAssignment},
+    {"# seed=3", kNoAssignment},
+    {"'seed=3", kNoAssignment},
     {"image.width=0", "image.width: found 0; expected an integer in [1, 16384]"},
     {"image.width=1280x720", "image.width: found \"1280x720\" (a string); expected an integer in [1, 16384]"},
     {"imaeg.width=1",
@@ -101,12 +101,12 @@ const std::vector<WrongOverride> wrong_overrides = {
     {"surface.two.resolution=64",
      "surface.two: found neither of \"file\" and \"generate\"; expected exactly one"},
 };
-INSTANTIATE_TEST_SUITE_P(Set, WrongOverrides, testing::ValuesIn(wrong_overrides));
+INSTANTIATE_TEST_SUITE_P(Set, WrongOverrides, testing::ValuesIn(kWrongOverrides));
 
 TEST(Overrides, BrokenTomlIsNotTakenAsAString) {
   const JobFolder folder;
   for (const std::string value : {"[1, 2", "{ior = 1.5", "\"open", "'open"}) {
-    const auto issues = folder.issues(least_job, {"camera.position=" + value});
+    const auto issues = folder.issues(kLeastJob, {"camera.position=" + value});
     ASSERT_EQ(issues.size(), 1u) << value;
     EXPECT_NE(issues[0].message.find("Error while parsing"), std::string::npos) << issues[0].message;
   }
@@ -114,10 +114,10 @@ TEST(Overrides, BrokenTomlIsNotTakenAsAString) {
 
 TEST(Overrides, MayNotBringInFurtherLines) {
   const JobFolder folder;
-  const auto issues = folder.issues(least_job, {"seed=1\naudit.samples=3"});
+  const auto issues = folder.issues(kLeastJob, {"seed=1\naudit.samples=3"});
   ASSERT_EQ(issues.size(), 1u);
   EXPECT_EQ(issues[0].file, "--set seed=1\\x0aaudit.samples=3");
-  EXPECT_EQ(issues[0].message, no_assignment);
+  EXPECT_EQ(issues[0].message, kNoAssignment);
 }
 
 }  // namespace

@@ -64,7 +64,7 @@ struct Nest {
   const char *begin, *repeat, *end;
 };
 
-const std::vector<Nest> nests = {
+const std::vector<Nest> kNests = {
     {"[a", ".a", "]"},   {"[[a", ".a", "]]"},     {"[a", " . a", "]"},
     {"a", ".a", " = 1"}, {"a", ".\"a\"", " = 1"}, {"x = { a", ".a", " = 1 }"},
     {"x = ", "[", ""},   {"x = ", "{a=", ""},     {"x = '''\"''' # \" ''' [\ny = ", "[", ""},
@@ -72,8 +72,8 @@ const std::vector<Nest> nests = {
 
 TEST(DeepNesting, IsAnIssue) {
   const JobFolder folder;
-  for (const Nest& nest : nests) {
-    const auto issues = folder.issues(least_job + nest.begin + repeated(nest.repeat, 200000) + nest.end);
+  for (const Nest& nest : kNests) {
+    const auto issues = folder.issues(kLeastJob + nest.begin + repeated(nest.repeat, 200000) + nest.end);
     ASSERT_EQ(issues.size(), 1u) << nest.begin;
     EXPECT_EQ(issues[0].message, "found more than 16 nested levels; expected at most 16");
     EXPECT_GE(issues[0].line, 15);
@@ -83,7 +83,7 @@ TEST(DeepNesting, IsAnIssue) {
 TEST(DeepNesting, OverridesToo) {
   const JobFolder folder;
   for (const std::string& text : {"a" + repeated(".a", 200000) + "=1", "x=" + repeated("[", 200000)}) {
-    const auto issues = folder.issues(least_job, {text});
+    const auto issues = folder.issues(kLeastJob, {text});
     ASSERT_EQ(issues.size(), 1u);
     EXPECT_LT(issues[0].file.size(), 100u);
     EXPECT_EQ(issues[0].message, "found more than 16 nested levels; expected at most 16");
@@ -135,7 +135,7 @@ TEST(DeepNesting, IsNotFooledByBracketsThatCloseNothing) {
 
 TEST(Size, OneMebibyteAndNotAByteMore) {
   const JobFolder folder;
-  const std::string full = least_job + std::string((1 << 20) - least_job.size(), '#');
+  const std::string full = kLeastJob + std::string((1 << 20) - kLeastJob.size(), '#');
   EXPECT_TRUE(folder.issues(full).empty());
   const auto issues = folder.issues(full + '#');
   ASSERT_EQ(issues.size(), 1u);

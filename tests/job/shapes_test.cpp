@@ -15,7 +15,7 @@ struct ShapesOfAJob : testing::Test {
 };
 
 TEST_F(ShapesOfAJob, HavePlacementAndParts) {
-  const std::string text = replaced(least_job, "type = \"sphere\"\nmaterial = \"gold\"",
+  const std::string text = replaced(kLeastJob, "type = \"sphere\"\nmaterial = \"gold\"",
                                     "type = \"jar\"\nmaterial = \"gold\"\nsize = 3\nscale = [1, 2, 3]\n"
                                     "rotate = [10, 20, 30]\ntranslate = [4, 5, 6]\n"
                                     "parts = [{ name = \"lid\", material = \"gold\" }]");
@@ -31,7 +31,7 @@ TEST_F(ShapesOfAJob, HavePlacementAndParts) {
 
 TEST_F(ShapesOfAJob, RefuseWhatMakesNoSense) {
   const auto with = [](const std::string& keys) {
-    return replaced(least_job, "type = \"sphere\"\n", "type = \"spoon\"\n" + keys + "\n");
+    return replaced(kLeastJob, "type = \"sphere\"\n", "type = \"spoon\"\n" + keys + "\n");
   };
   EXPECT_EQ(message_of(with("scale = [1, 0, 1]")).rfind("shape.0.scale.1: found 0", 0), 0u);
   EXPECT_EQ(message_of(with("radius = 1")).rfind("shape.0.radius: found an unknown key", 0), 0u);
@@ -41,7 +41,7 @@ TEST_F(ShapesOfAJob, RefuseWhatMakesNoSense) {
 }
 
 TEST_F(ShapesOfAJob, LightsMayHaveAnExtent) {
-  const std::string text = least_job +
+  const std::string text = kLeastJob +
                            "[[light]]\ntype = \"sphere\"\nposition = [1, 2, 3]\nradius = 0.5\n"
                            "[[light]]\ntype = \"disk\"\nposition = [1, 2, 3]\ndirection = [0, 1, 0]\n"
                            "radius = 0.25\nintensity = [7, 8, 9]\n";
@@ -49,19 +49,19 @@ TEST_F(ShapesOfAJob, LightsMayHaveAnExtent) {
   EXPECT_EQ(std::get<SphereLight>(lights.at(1)).radius, 0.5);
   EXPECT_EQ(std::get<DiskLight>(lights.at(2)).direction, Vector3d(0, 1, 0));
   EXPECT_EQ(std::get<DiskLight>(lights.at(2)).intensity, Color(7, 8, 9));
-  EXPECT_EQ(message_of(least_job + "[[light]]\ntype = \"disk\"\nposition = [1, 2, 3]\nradius = 0\n")
+  EXPECT_EQ(message_of(kLeastJob + "[[light]]\ntype = \"disk\"\nposition = [1, 2, 3]\nradius = 0\n")
                 .rfind("light.1.radius: found 0", 0),
             0u);
 }
 
 TEST_F(ShapesOfAJob, MaterialsMayHaveACoat) {
   const std::string text =
-      replaced(least_job, "surface = \"bumps\"", "surface = \"bumps\"\ncoat = { ior = 1.6 }");
+      replaced(kLeastJob, "surface = \"bumps\"", "surface = \"bumps\"\ncoat = { ior = 1.6 }");
   const auto coat = folder.load(text).scene.materials.at(0).coat;
   ASSERT_TRUE(coat);
   EXPECT_EQ(coat->ior, 1.6);
   EXPECT_EQ(coat->roughness, 0.02);
-  EXPECT_FALSE(folder.load(least_job).scene.materials.at(0).coat);
+  EXPECT_FALSE(folder.load(kLeastJob).scene.materials.at(0).coat);
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 namespace mica::host::test::values_test {
 namespace {
 
-const std::string full_job = R"(
+const std::string kFullJob = R"(
 seed = 7
 
 [image]
@@ -112,7 +112,7 @@ struct FullJob : testing::Test {
     folder.write("maps/c.png", "x");
     folder.write("cup.obj", "x");
     folder.write("sky.exr", "x");
-    job = folder.load(full_job);
+    job = folder.load(kFullJob);
   }
   JobFolder folder;
   Job job;
@@ -210,7 +210,7 @@ TEST_F(FullJob, LightsAndBackground) {
 
 TEST(Values, AbsentKeysKeepTheirDefaults) {
   const JobFolder folder;
-  const Job job = folder.load(least_job);
+  const Job job = folder.load(kLeastJob);
   EXPECT_EQ(job.seed, Job().seed);
   EXPECT_EQ(job.image.width, ImageSettings().width);
   EXPECT_EQ(job.audit.samples, 0);
@@ -268,7 +268,7 @@ wind_speed = 7
 wind_direction = 45
 time = 1.5
 seed = 6
-)" + least_job);
+)" + kLeastJob);
   const auto& brushed = std::get<BrushedSurface>(job.surfaces[0].source);
   EXPECT_EQ(brushed.resolution, 100);
   EXPECT_EQ(brushed.rms_slope, 0.3);
@@ -289,7 +289,7 @@ seed = 6
   EXPECT_EQ(scratches.profile, ScratchProfile::v);
   EXPECT_EQ(scratches.seed, 3u);
   const auto& dents = std::get<DentsSurface>(job.surfaces[3].source);
-  EXPECT_EQ(job.surfaces[2].name, "bumps");  // of the least job: in the order of names
+  EXPECT_EQ(job.surfaces[2].name, "bumps");  // the least job's: in the order of names
   EXPECT_EQ(dents.resolution, 100);
   EXPECT_EQ(dents.density, 0.8);
   EXPECT_EQ(dents.radius_low_texels, 3);
@@ -322,7 +322,7 @@ layers = [{ surface = "z", weight = 0.5 }, { surface = "bumps" }]
 interpolation = "bicubic"
 [surface.z]
 generate = "dents"
-)" + least_job,
+)" + kLeastJob,
                               {"surface.z.depth=0.3"});
   const auto& layers = std::get<LayersSurface>(job.surfaces[0].source).layers;
   ASSERT_EQ(layers.size(), 2u);
@@ -336,7 +336,7 @@ generate = "dents"
 TEST(Values, DefaultLengthsFitSmallMaps) {
   const JobFolder folder;
   for (const std::string kind : {"spectrum", "brushed", "scratches", "dents", "bumps", "waves"}) {
-    const Job job = folder.load(replaced(least_job, "\"spectrum\"", '"' + kind + "\"\nresolution = 16"));
+    const Job job = folder.load(replaced(kLeastJob, "\"spectrum\"", '"' + kind + "\"\nresolution = 16"));
     EXPECT_NO_THROW(make_surface(job.surfaces[0], nullptr)) << kind;
   }
 }
@@ -357,26 +357,26 @@ TEST(Values, AbsoluteFileNamesStayAsTheyAre) {
   const JobFolder folder;
   folder.write("sky.exr", "x");
   const std::string sky = folder.path("sky.exr");
-  EXPECT_EQ(folder.load(least_job + "[background]\nimage = '" + sky + "'\n").scene.background.path, sky);
+  EXPECT_EQ(folder.load(kLeastJob + "[background]\nimage = '" + sky + "'\n").scene.background.path, sky);
 }
 
 TEST(Values, EndsOfRangesAreAccepted) {
   const JobFolder folder;
   const std::string image = "[image]\nwidth = 1\nheight = 16384\nsubpixels = 16\n[audit]\nsamples = 0\n";
-  EXPECT_EQ(folder.load(image + least_job).image.subpixels, 16);
-  EXPECT_EQ(folder.load("seed = 9223372036854775807\n" + least_job).seed, 9223372036854775807u);
+  EXPECT_EQ(folder.load(image + kLeastJob).image.subpixels, 16);
+  EXPECT_EQ(folder.load("seed = 9223372036854775807\n" + kLeastJob).seed, 9223372036854775807u);
 }
 
 TEST(Hash, CoversTextAndOverridesAndNothingElse) {
   const JobFolder folder;
-  const std::uint64_t hash = folder.load(least_job).hash;
-  EXPECT_EQ(hash, XXH3_64bits(least_job.data(), least_job.size()));
-  folder.write("other.toml", least_job);
+  const std::uint64_t hash = folder.load(kLeastJob).hash;
+  EXPECT_EQ(hash, XXH3_64bits(kLeastJob.data(), kLeastJob.size()));
+  folder.write("other.toml", kLeastJob);
   EXPECT_EQ(load_job(folder.path("other.toml"), {}).hash, hash);
-  EXPECT_NE(folder.load(least_job + "\n").hash, hash);
-  EXPECT_NE(folder.load(least_job, {"seed=1"}).hash, hash);
-  EXPECT_NE(folder.load(least_job, {"seed=1", "seed=2"}).hash,
-            folder.load(least_job, {"seed=2", "seed=1"}).hash);
+  EXPECT_NE(folder.load(kLeastJob + "\n").hash, hash);
+  EXPECT_NE(folder.load(kLeastJob, {"seed=1"}).hash, hash);
+  EXPECT_NE(folder.load(kLeastJob, {"seed=1", "seed=2"}).hash,
+            folder.load(kLeastJob, {"seed=2", "seed=1"}).hash);
 }
 
 class ShippedJob : public testing::TestWithParam<const char*> {};

@@ -9,7 +9,7 @@
 #include "host/measure/suite.h"
 #include "host/methods/registry.h"
 #include "host/reference/oracle.h"
-#include "host/verify/accuracy.h"
+#include "host/surface/texel_footprint.h"
 #include "mica/error.h"
 
 namespace mica::host::bench::measure_test {
@@ -24,7 +24,7 @@ TEST(Errors, AreRelativeToTheReferenceAndItsPeak) {
 }
 
 TEST(Contenders, AreAllOfTheRegistry) {
-  const std::vector<Contender> all = contenders({1, 2});
+  const std::vector<Contender> all = contenders(MethodRegistry::builtin(), {1, 2});
   for (const std::string& name : MethodRegistry::builtin().names(
            [](const MethodTraits& traits) { return traits.compared && traits.map; })) {
     const auto count =

@@ -75,14 +75,4 @@ inline std::vector<double> sample_bilinear(const Surface& surface, const std::ve
   return densities;
 }
 
-/// sqrt(sum (D - ref)^2 / sum ref^2)
-inline double relative_l2(const std::vector<float>& densities, const std::vector<double>& expected) {
-  double squares = 0, expected_squares = 0;
-  for (std::size_t n = 0; n < expected.size(); ++n) {
-    squares += std::pow(densities[n] - expected[n], 2);
-    expected_squares += std::pow(expected[n], 2);
-  }
-  return std::sqrt(squares / expected_squares);
-}
-
 }  // namespace mica::host

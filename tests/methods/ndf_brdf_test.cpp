@@ -7,8 +7,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/base/masking.h"
+#include "host/base/random.h"
+#include "host/device/device.h"
+#include "host/methods/evaluator.h"
+#include "host/methods/patch_brdf.h"
 #include "host/methods/registry.h"
-#include "host/surface/random.h"
 
 namespace mica::host::ndf_brdf_test {
 namespace {
@@ -35,7 +39,7 @@ class NdfBrdfTest : public testing::TestWithParam<NdfBrdf::Draws> {
   std::vector<BrdfSample> draw(int count) {
     std::vector<SampleQuery> queries;
     for (int n = 0; n < count; ++n)
-      queries.push_back({from_, synthesis::random_bits(3, 1, static_cast<std::uint64_t>(n))});
+      queries.push_back({from_, random_bits(3, 1, static_cast<std::uint64_t>(n))});
     return brdf_.sample(queries);
   }
 };

@@ -6,9 +6,14 @@
 #include <cmath>
 #include <cstdio>
 
+#include "host/base/masking.h"
+#include "host/base/random.h"
+#include "host/device/device.h"
+#include "host/methods/evaluator.h"
+#include "host/methods/patch_brdf.h"
 #include "host/methods/registry.h"
 #include "host/reference/beckmann_mixture.h"
-#include "host/surface/random.h"
+#include "host/surface/texel_footprint.h"
 #include "mica/error.h"
 #include "tests/methods/gaussians/mixture_surfaces.h"
 #include "tests/statistics/chi_square.h"
@@ -24,8 +29,7 @@ Device& device() {
 }
 
 std::unique_ptr<PatchBrdf> beckmanns(const Surface& surface, Masking masking) {
-  return make_patch_brdf("beckmanns", device(), surface,
-                         {{"masking", masking_names()[static_cast<std::size_t>(masking)]}});
+  return make_patch_brdf("beckmanns", device(), surface, {{"masking", std::string(word_of(masking))}});
 }
 
 Surface rough(double rms_slope, int resolution = 64, double correlation = 6) {
@@ -135,7 +139,7 @@ TEST(PatchBrdf, GeometricMaskingGainsEnergy) {
   const auto geometric = beckmanns(surface, Masking::geometric);
   double most = 0, least = INFINITY;
   for (int n = 0; n < 24; ++n) {
-    const Eigen::Vector2d uv(synthesis::random_unit(1, 0, n), synthesis::random_unit(1, 1, n));
+    const Eigen::Vector2d uv(random_unit(1, 0, n), random_unit(1, 1, n));
     const ViewQuery query{make_footprint(surface, uv, 2, 2, 0), direction(60, 0.7), 0.05};
     const double energy = geometric->energy({query})[0].single;
     most = std::max(most, energy), least = std::min(least, energy);
@@ -160,7 +164,7 @@ statistics::ChiSquare test_sampler(PatchBrdf* brdf, const ViewQuery& from, const
   };
   const std::vector<double> integrals = bins.integrate(density, 4);
   std::vector<SampleQuery> queries(count, {drawn_from, 0});
-  for (std::size_t n = 0; n < count; ++n) queries[n].key = synthesis::random_bits(7, 0, n);
+  for (std::size_t n = 0; n < count; ++n) queries[n].key = random_bits(7, 0, n);
   std::vector<Eigen::Vector3d> samples;
   for (const BrdfSample& sample : brdf->sample(queries))
     if (sample.pdf > 0) samples.push_back(sample.light.cast<double>());
@@ -192,7 +196,7 @@ TEST(PatchBrdf, SamplesFollowTheirDensity) {
   std::printf("least p-value of %zu: %.3f\n", views.size(), least);
 }
 
-/// The same test of samples that are drawn with a roughness 3% too large.
+/// The chi-square test rejects samples that are drawn with a roughness 3% too large.
 TEST(PatchBrdf, ChiSquareFindsAWrongRoughness) {
   const Surface surface = mixture_spectrum(0.3);
   const auto brdf = beckmanns(surface, Masking::geometric);
@@ -209,7 +213,7 @@ TEST(PatchBrdf, WeightsAverageToTheAlbedo) {
   const ViewQuery view{make_footprint(surface, {0.4, 0.4}, 3, 2, 1), direction(40, 1), 0.08};
   constexpr int count = 20000;
   std::vector<SampleQuery> queries(count, {view, 0});
-  for (int n = 0; n < count; ++n) queries[n].key = synthesis::random_bits(9, 0, n);
+  for (int n = 0; n < count; ++n) queries[n].key = random_bits(9, 0, n);
   double sum = 0, squares = 0;
   for (const BrdfSample& sample : brdf->sample(queries)) {
     EXPECT_EQ(sample.weight_multiple, 0);
@@ -225,7 +229,7 @@ TEST(PatchBrdf, AnswersDependOnTheQueryAlone) {
     const auto brdf = beckmanns(surface, masking);
     std::vector<BrdfQuery> queries;
     for (int n = 0; n < 300; ++n) {
-      const auto random = [&](int stream) { return synthesis::random_unit(4, stream, n); };
+      const auto random = [&](int stream) { return random_unit(4, stream, n); };
       queries.push_back({make_footprint(surface, {random(0), random(1)}, 0.2 + 20 * random(2) * random(2),
                                         0.2, 3 * random(3)),
                          direction(89 * random(4), 6 * random(5)), direction(89 * random(6), 6 * random(7)),

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "host/device/device.h"
+#include "host/device/launch.h"
 #include "host/reference/random_numbers.h"
 
 namespace mica::host::random_numbers_test {
@@ -26,13 +27,8 @@ std::vector<float> on_device(Device* device, WaveForm form, std::uint64_t first_
   cl::Kernel kernel = device->kernel("probes/random_numbers.cl", "random_numbers", "", form);
   const cl::Buffer alone = device->buffer(count * sizeof(float), CL_MEM_WRITE_ONLY, "numbers");
   const cl::Buffer lanes = device->buffer(count * sizeof(float), CL_MEM_WRITE_ONLY, "numbers");
-  kernel.setArg(0, static_cast<cl_uint>(first_key));
-  kernel.setArg(1, static_cast<cl_uint>(first_key >> 32));
-  kernel.setArg(2, static_cast<cl_uint>(dimension));
-  kernel.setArg(3, alone);
-  kernel.setArg(4, lanes);
-  const std::size_t items = form == WaveForm::items ? count : count / 16;
-  device->queue().enqueueNDRangeKernel(kernel, cl::NullRange, items, 16);
+  launch(*device, kernel, launch_size(form, count / kWaveLanes), static_cast<cl_uint>(first_key),
+         static_cast<cl_uint>(first_key >> 32), static_cast<cl_uint>(dimension), alone, lanes);
   std::vector<float> numbers(count);
   device->queue().enqueueReadBuffer(in_a_wave ? lanes : alone, CL_TRUE, 0, count * sizeof(float),
                                     numbers.data());
@@ -82,7 +78,7 @@ double deviations_of_pairs(const std::function<std::pair<double, double>(int)>& 
 TEST(RandomNumbers, AreUniformAndIndependent) {
   const std::uint64_t start = 0x5eed00000000;
   for (const std::uint32_t dimension : {0u, 1u, 2u, 7u}) {
-    // of one stream, the next in it and the one after
+    // Within one stream: each number with the next in it, and with the one after.
     for (const std::uint32_t step : {1u, 2u})
       EXPECT_LE(deviations_of_pairs([&](int n) {
                   return std::pair(random_uniform(start + n, dimension),
@@ -90,7 +86,7 @@ TEST(RandomNumbers, AreUniformAndIndependent) {
                 }),
                 kMostDeviations)
           << dimension << ", " << step;
-    // of two streams: consecutive, a row of pixels apart, in the upper half
+    // Between two streams: consecutive ones, a row of pixels apart, and in the upper half.
     for (const std::uint64_t step : {std::uint64_t{1}, std::uint64_t{1280}, std::uint64_t{1} << 32})
       EXPECT_LE(deviations_of_pairs([&](int n) {
                   return std::pair(random_uniform(start + n, dimension),

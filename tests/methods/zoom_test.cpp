@@ -4,9 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/base/error_norms.h"
+#include "host/base/random.h"
 #include "host/methods/pyramid/pyramid_evaluator.h"
-#include "host/surface/random.h"
-#include "host/verify/accuracy.h"
+#include "host/surface/texel_footprint.h"
 #include "tests/methods/bilinear_samples.h"
 
 namespace mica::host::zoom_test {
@@ -28,7 +29,7 @@ std::vector<Change> zoom(const Surface& surface, double first_sigma, double last
   PyramidEvaluator pyramid(device(), surface);
   std::vector<Query> queries(half_vectors);
   for (int n = 0; n < half_vectors; ++n) {
-    const auto random = [n](std::uint64_t stream) { return synthesis::random_unit(3, stream, n); };
+    const auto random = [n](std::uint64_t stream) { return random_unit(3, stream, n); };
     queries[n].half_vector = surface.texel(std::lround(256 * random(0)), std::lround(256 * random(1)));
     queries[n].roughness = 0.02;
   }

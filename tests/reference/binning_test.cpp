@@ -6,8 +6,8 @@
 #include <boost/math/distributions/chi_squared.hpp>
 #include <numeric>
 
+#include "host/base/random.h"
 #include "host/reference/oracle.h"
-#include "host/surface/random.h"
 #include "mica/error.h"
 
 namespace mica::host::reference::binning_test {
@@ -16,7 +16,7 @@ namespace {
 Surface random_surface(Interpolation interpolation) {
   std::vector<Eigen::Vector2d> normals(24 * 20);
   for (std::size_t k = 0; k < normals.size(); ++k) {
-    normals[k] = {0.4 * synthesis::random_unit(5, 0, k) - 0.2, 0.4 * synthesis::random_unit(5, 1, k) - 0.1};
+    normals[k] = {0.4 * random_unit(5, 0, k) - 0.2, 0.4 * random_unit(5, 1, k) - 0.1};
   }
   return Surface(24, 20, interpolation, std::move(normals));
 }

@@ -12,7 +12,7 @@
 namespace mica::host::reference::gaussian_triangle_test {
 namespace {
 
-constexpr double tolerance = 1e-10;
+constexpr double kTolerance = 1e-10;
 
 /// The mean of exp(-|w|^2 / 2) over a triangle, and the error that the oracle claims for it.
 struct Mean {
@@ -20,7 +20,7 @@ struct Mean {
 };
 Mean mean(const std::array<Whitened, 3>& triangle, double lower_bound = 0) {
   static const TriangleRules rules;
-  RunningIntegral integral(tolerance, 1);
+  RunningIntegral integral(kTolerance, 1);
   if (lower_bound > 0) integral.promise(lower_bound);
   integrate_triangle(triangle, 1, rules, &integral);
   return {integral.sum(), integral.error()};
@@ -40,8 +40,8 @@ Eigen::Matrix4d turned(std::mt19937* random) {
 
 struct Regime {
   const char* name;
-  double size, thickness;   // of the triangle, whitened
-  double distance, offset;  // of its nearest point or corner within its plane, and of the plane
+  double size, thickness;   // size and thickness of the triangle, whitened
+  double distance, offset;  // how far its nearest point or corner is within its plane, and the plane
 };
 
 class GaussianTriangle : public testing::TestWithParam<Regime> {};
@@ -61,12 +61,12 @@ TEST_P(GaussianTriangle, AgreesWithFiftyDigits) {
                          regime.offset, 0);
   }
   const double expected = static_cast<double>(FiftyDigits::mean(triangle));
-  const double rounding = 1e-14 * (1 + regime.size);  // of the vertices themselves
+  const double rounding = 1e-14 * (1 + regime.size);  // what the vertices themselves are rounded by
   const Mean alone = mean(triangle);
-  EXPECT_NEAR(alone.value, expected, (tolerance + rounding) * expected);
+  EXPECT_NEAR(alone.value, expected, (kTolerance + rounding) * expected);
   EXPECT_LE(std::abs(alone.value - expected), alone.error + rounding * expected);
   const Mean amid_others = mean(triangle, 0.5 * expected);
-  EXPECT_NEAR(amid_others.value, expected, (3 * tolerance + rounding) * expected);
+  EXPECT_NEAR(amid_others.value, expected, (3 * kTolerance + rounding) * expected);
 }
 
 INSTANTIATE_TEST_SUITE_P(

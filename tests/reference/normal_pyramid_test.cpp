@@ -20,21 +20,21 @@ class NormalPyramidOf : public testing::TestWithParam<Interpolation> {};
 
 TEST_P(NormalPyramidOf, EveryLevelHoldsTheNormalsBelowItAndNoMore) {
   const Surface surface = stepped_surface(GetParam());
-  const CellGrid grid(surface);
-  const NormalPyramid pyramid(grid);
+  const CellMap map(surface);
+  const NormalPyramid pyramid(map);
   ASSERT_EQ(pyramid.columns(pyramid.top_level()), 1);
   ASSERT_EQ(pyramid.rows(pyramid.top_level()), 1);
   for (int level = 0; level <= pyramid.top_level(); ++level) {
-    const int cells = CellGrid::block_cells << level;
+    const int cells = CellMap::block_cells << level;
     std::vector<NormalBox> expected(pyramid.columns(level) * pyramid.rows(level));
-    for (int j = 0; j < grid.rows(); ++j) {
-      for (int i = 0; i < grid.columns(); ++i) {
+    for (int j = 0; j < map.rows(); ++j) {
+      for (int i = 0; i < map.columns(); ++i) {
         for (int corner = 0; corner < 4;
              ++corner) {  // just inside the cell, where `nearest` is its own texel
           const double inside = 1e-9, x = corner & 1 ? 1 - inside : inside,
                        y = corner >> 1 ? 1 - inside : inside;
           const Eigen::Vector2d position =
-              grid.corner_texels(i, j) + grid.cell_texels() * Eigen::Vector2d(x, y);
+              map.corner_texels(i, j) + map.cell_texels() * Eigen::Vector2d(x, y);
           expected[(j / cells) * pyramid.columns(level) + i / cells].include(normal_at(surface, position));
         }
       }

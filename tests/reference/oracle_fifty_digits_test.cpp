@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "host/base/constants.h"
+#include "host/base/random.h"
 #include "host/reference/oracle.h"
 #include "host/surface/interpolate.h"
-#include "host/surface/random.h"
 #include "tests/reference/fifty_digits.h"
 
 namespace mica::host::reference::oracle_fifty_digits_test {
@@ -23,7 +23,7 @@ using Number = FiftyDigits::Number;
 constexpr int kSide = 8;
 
 double random(std::uint64_t n, std::uint64_t stream) {
-  return synthesis::random_unit(50, stream, n);
+  return random_unit(50, stream, n);
 }
 double logarithmic(std::uint64_t n, std::uint64_t stream, double low, double high) {
   return low * std::pow(high / low, random(n, stream));

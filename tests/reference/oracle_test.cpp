@@ -1,5 +1,6 @@
 #include "host/reference/oracle.h"
 #include "host/base/constants.h"
+#include "host/base/random.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -11,7 +12,6 @@
 #include "host/base/symmetric_matrix.h"
 #include "host/reference/gaussian_triangle.h"
 #include "host/surface/interpolate.h"
-#include "host/surface/random.h"
 #include "mica/error.h"
 #include "tests/reference/fifty_digits.h"
 
@@ -19,7 +19,7 @@ namespace mica::host::reference::oracle_test {
 namespace {
 
 double random_number(int stream, std::uint64_t index) {
-  return synthesis::random_unit(1, stream, index);
+  return random_unit(1, stream, index);
 }
 
 /// A map of independent random normals with components within +-range around (0.1, -0.05).

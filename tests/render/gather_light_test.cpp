@@ -37,8 +37,8 @@ correlation = 8
   return path;
 }
 
-const std::string chalk = "surface = \"flat\"\nspecular = { ior = 1 }\ndiffuse = [0.8, 0.5, 0.2]\n";
-const std::string furnace = "[[light]]\ntype = \"furnace\"\nradiance = [1, 2, 3]\n";
+const std::string kChalk = "surface = \"flat\"\nspecular = { ior = 1 }\ndiffuse = [0.8, 0.5, 0.2]\n";
+const std::string kFurnace = "[[light]]\ntype = \"furnace\"\nradiance = [1, 2, 3]\n";
 
 Image render_job(const std::string& path, Techniques techniques, int rows_a_block = 0,
                  std::size_t batch = 0) {
@@ -55,7 +55,7 @@ struct Mean {
   double mean, error;  ///< and its standard deviation
 };
 
-/// Of pixels that are independent and alike.
+/// The mean over pixels that are independent and alike.
 Mean mean_of(const Image& image, int channel) {
   double sum = 0, squares = 0;
   const double count = image.width * image.height;
@@ -91,7 +91,7 @@ std::string environment(const Function& radiance) {
 }
 
 TEST(GatherLight, DiffusePlaneInAFurnaceShowsItsAlbedo) {
-  const std::string job = plane_job(chalk, furnace, 40, "samples = 16");
+  const std::string job = plane_job(kChalk, kFurnace, 40, "samples = 16");
   for (const Techniques techniques : {Techniques::both, Techniques::lights, Techniques::brdf})
     expect_mean(render_job(job, techniques), {0.8, 1.0, 0.6});
 }
@@ -100,7 +100,7 @@ TEST(GatherLight, DiffusePlaneReflectsTheIrradiance) {
   // L = 1 + 2 theta, of which bilinear pixels are exact; its irradiance is kPi + kPi^2 / 2.
   const std::string sky =
       environment([](const Eigen::Vector3d& d) { return Color::Constant(1 + 2 * std::acos(d.z())); });
-  const std::string job = plane_job(chalk, sky, 40, "samples = 16");
+  const std::string job = plane_job(kChalk, sky, 40, "samples = 16");
   const Color expected = Color(0.8, 0.5, 0.2) * (1 + kPi / 2);
   for (const Techniques techniques : {Techniques::both, Techniques::lights, Techniques::brdf})
     expect_mean(render_job(job, techniques), expected, 1e-4);  // the pole's pixel is constant, not linear
@@ -208,7 +208,7 @@ TEST(GatherLight, IsTheSameForAnyBatchAndThreadCount) {
 }
 
 TEST(GatherLight, SeedChangesTheNoise) {
-  const std::string job = plane_job(chalk, environment(lamp_sky), 30, "samples = 2");
+  const std::string job = plane_job(kChalk, environment(lamp_sky), 30, "samples = 2");
   const Image one = render_job(job, Techniques::both);
   std::ofstream(job, std::ios::app) << "\n";
   std::ifstream file(job);
@@ -231,7 +231,7 @@ std::vector<Image> render_frames(const std::string& path, int first, int last) {
 }
 
 TEST(GatherLight, NoiseChangesFromFrameToFrameAndNotByWhereOneBegins) {
-  const std::string still = plane_job(chalk, environment(lamp_sky), 30, "samples = 2");
+  const std::string still = plane_job(kChalk, environment(lamp_sky), 30, "samples = 2");
   const Image without_frames = render_job(still, Techniques::both);
   std::ofstream(still, std::ios::app) << "\n[frames]\nrange = [0, 9]\n";
   const std::vector<Image> sequence = render_frames(still, 0, 2);

@@ -59,7 +59,7 @@ TEST(DifferencePixels, AreBlueWhiteAndOrange) {
   EXPECT_EQ(pixels, (std::vector<std::uint8_t>{0, 114, 178, 255, 255, 255, 213, 94, 0}));
 }
 
-/// Of four points, the two that none is both faster and closer than, and the one between.
+/// Draws, from four points, the two that none is both faster and closer than, and the one between.
 TEST(Chart, DrawsTheParetoFront) {
   Chart chart;
   chart.pareto = true;

@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-const Vector3d up = Vector3d::UnitZ();
+const Vector3d kUp = Vector3d::UnitZ();
 
 Vector3d direction(double cosine, double azimuth = 0) {
   const double sine = std::sqrt(1 - cosine * cosine);
@@ -26,7 +26,7 @@ TEST(Coat, RefractsBySnell) {
     const CoatInterface coat({ior, 0.02});
     for (const double degrees : {0.0, 10.0, 45.0, 80.0, 89.9}) {
       const double angle = degrees * kPi / 180;
-      const Vector3d inside = coat.refracted(direction(std::cos(angle), 0.7), up);
+      const Vector3d inside = coat.refracted(direction(std::cos(angle), 0.7), kUp);
       EXPECT_NEAR(inside.norm(), 1, 1e-14);
       EXPECT_NEAR(std::hypot(inside.x(), inside.y()) * ior, std::sin(angle), 1e-14);
       EXPECT_NEAR(std::atan2(inside.y(), inside.x()), degrees > 0 ? 0.7 : 0.0, 1e-9);
@@ -69,10 +69,10 @@ TEST(Coat, NarrowLobeBelowKeepsWhatCrossesTwice) {
                      y = reach * (2 * (b + 0.5) / steps - 1);
         if (x * x + y * y >= 1) continue;
         const Vector3d eye(x, y, std::sqrt(1 - x * x - y * y));
-        const Vector3d half = (coat.refracted(eye, up) + coat.refracted(light, up)).normalized();
+        const Vector3d half = (coat.refracted(eye, kUp) + coat.refracted(light, kUp)).normalized();
         const double D =
             std::exp(-half.head<2>().squaredNorm() / (2 * sigma * sigma)) / (2 * kPi * sigma * sigma);
-        energy += D * coat.glint_weight(ColorFresnel{}, 0, up, eye, light)[0];
+        energy += D * coat.glint_weight(ColorFresnel{}, 0, kUp, eye, light)[0];
       }
     energy *= std::pow(2 * reach / steps, 2);
     const double crossed = 1 - dielectric_reflectance(cos_i, ior);
@@ -92,7 +92,7 @@ TEST(Coat, ReflectsAsMuchAsItsFresnelFactor) {
                    y = 0.15 * (2 * (b + 0.5) / steps - 1);
       if (x * x + y * y >= 1) continue;
       const Vector3d eye(x, y, std::sqrt(1 - x * x - y * y));
-      energy += coat.reflection(up, eye, light, 0);
+      energy += coat.reflection(kUp, eye, light, 0);
     }
   energy *= std::pow(0.3 / steps, 2);
   EXPECT_NEAR(energy / cos_i, dielectric_reflectance(cos_i, 1.5), 1e-3);
@@ -105,7 +105,7 @@ TEST(Coat, QueriesLieBelowTheInterface) {
   const CoatInterface coat(*paint.coat);
   const Vector3d eye = direction(0.7, 0.2);
   const Illumination light{direction(0.5, 2.0), 1, Color::Ones()};
-  const LobesSeen seen = see_lobes(paint, coat, 0.1, up, eye, light);
+  const LobesSeen seen = see_lobes(paint, coat, 0.1, kUp, eye, light);
   const Vector3d expected =
       (direction(std::sqrt(1 - 0.51 / 2.25), 0.2) + direction(std::sqrt(1 - 0.75 / 2.25), 2.0)).normalized();
   EXPECT_NEAR((seen.half_vector - expected).norm(), 0, 1e-12);

@@ -86,7 +86,7 @@ TEST(FootprintCovariance, ShortensAxesOfMoreThanAHundredToOne) {
   for (const double major : {1.0, 1e3, 1e12})
     for (const double angle : {0.0, 0.3, 1.5707963267948966, 2.5}) {
       const PrincipalAxes axes = principal_axes(footprint_covariance(differentials(major, 1e-3, angle), 1));
-      // Of the longest ones, rounding has already moved the minor axis.
+      // Rounding has already moved the minor axis of the longest ones.
       EXPECT_NEAR(std::sqrt(axes.eigenvalues[0]), 1e-3, major < 1e9 ? 1e-9 : 1e-3);
       EXPECT_NEAR(axes.eigenvalues[1] / axes.eigenvalues[0], 1e4, 1);
       const Vector2d direction = axes.eigenvectors.col(1);

@@ -98,7 +98,7 @@ TEST(AreaLights, PenumbraIsHalfLitInItsMiddle) {
     const CameraRay ray = camera.ray(column + 0.5, 1.5);
     const Vector3d p = ray.origin - ray.origin.z() / ray.direction.z() * ray.direction;
     const double cosine = 2 / std::sqrt(4 + p.squaredNorm());
-    const double full = std::pow(cosine, 4) / 4;  // of 1 W/sr seen from 2 away
+    const double full = std::pow(cosine, 4) / 4;  // what 1 W/sr gives from 2 away
     const double lit = rows.radiance[static_cast<std::size_t>(column)].x() / full;
     if (p.x() < -0.12) {
       EXPECT_NEAR(lit, 1, 1e-3) << p.x();

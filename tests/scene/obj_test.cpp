@@ -28,7 +28,7 @@ class Obj : public FolderTest {
   }
 };
 
-const std::string square =
+const std::string kSquare =
     "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\n"
     "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n";
 
@@ -50,18 +50,18 @@ TEST_F(Obj, ReadsTrianglesWithEverything) {
 }
 
 TEST_F(Obj, MaterialsAreParts) {
-  const TriangleMesh mesh = load(square +
+  const TriangleMesh mesh = load(kSquare +
                                  "f 1/1 2/2 3/3\nusemtl lid\nf 1/1 3/3 4/4\nusemtl body\nf 1/1 2/2 3/3 "
                                  "4/4\nusemtl lid\nf 2/2 3/3 4/4\n");
   EXPECT_EQ(mesh.parts, (std::vector<std::string>{"", "lid", "body"}));
   EXPECT_EQ(mesh.part_of_triangle, (std::vector<std::uint32_t>{0, 1, 2, 2, 1}));
-  EXPECT_EQ(load(square + "usemtl all\nf 1/1 2/2 3/3\n").parts, (std::vector<std::string>{"all"}));
+  EXPECT_EQ(load(kSquare + "usemtl all\nf 1/1 2/2 3/3\n").parts, (std::vector<std::string>{"all"}));
   EXPECT_EQ(error_of("usemtl\n").rfind("1: found 0 names", 0), 0u);
 }
 
 TEST_F(Obj, NegativeIndicesCountBack) {
-  const TriangleMesh forward = load(square + "vn 0 0 1\nf 1/1/1 2/2/1 3/3/1\n");
-  const TriangleMesh back = load(square + "vn 0 0 1\nf -4/-4/-1 -3/-3/-1 -2/-2/-1\n");
+  const TriangleMesh forward = load(kSquare + "vn 0 0 1\nf 1/1/1 2/2/1 3/3/1\n");
+  const TriangleMesh back = load(kSquare + "vn 0 0 1\nf -4/-4/-1 -3/-3/-1 -2/-2/-1\n");
   EXPECT_EQ(forward.positions, back.positions);
   EXPECT_EQ(forward.uvs, back.uvs);
 }
@@ -78,7 +78,7 @@ TEST_F(Obj, PolygonsBecomeTrianglesThatCoverThem) {
 }
 
 TEST_F(Obj, SquareAgreesWithThePlane) {
-  load(square + "f 1/1 2/2 3/3 4/4\n");
+  load(kSquare + "f 1/1 2/2 3/3 4/4\n");
   const Geometry mesh({{MeshShape{path("a.obj")}, ""}}), plane({{PlaneShape{{0, 0, 0}, 2}, ""}});
   for (double x = -0.95; x < 1; x += 0.37)
     for (double y = -0.9; y < 1; y += 0.23) {
@@ -115,7 +115,7 @@ TEST_F(Obj, MirroredHalvesKeepTheirTangents) {
 
 TEST_F(Obj, NeighboursShareTheirTangents) {
   const TriangleMesh mesh =
-      load(square + "vn 0 0 1\nv 2 0 1\nvt 2 0.5\nf 1/1/1 2/2/1 3/3/1 4/4/1\nf 2/2/1 5/5/1 3/3/1\n");
+      load(kSquare + "vn 0 0 1\nv 2 0 1\nvt 2 0.5\nf 1/1/1 2/2/1 3/3/1 4/4/1\nf 2/2/1 5/5/1 3/3/1\n");
   EXPECT_EQ(mesh.positions.size(), 5u);
 }
 
@@ -126,30 +126,30 @@ TEST_F(Obj, MistakesAreNamedWithTheirLine) {
   EXPECT_EQ(error_of("v 1 1e99 3\n"), "1: found 1e99, expected a number between -1e15 and 1e15");
   EXPECT_EQ(error_of("v 1 1e999 3\n"), "1: found 1e999, expected a number between -1e15 and 1e15");
   EXPECT_EQ(error_of("vt 0.5\n"), "1: found 1 numbers after 'vt', expected 2");
-  EXPECT_EQ(error_of(square + "f 1/1 2/2\n"), "9: found a face of 2 corners, expected at least 3");
-  EXPECT_EQ(error_of(square + "f 1/1 2/2 5/3\n"), "9: found index 5 of a 'v', but 4 precede it");
-  EXPECT_EQ(error_of(square + "f 1/1 2/2 0/3\n"), "9: found index 0 of a 'v', but 4 precede it");
-  EXPECT_EQ(error_of(square + "f 1/1 2/2 3/-5\n"), "9: found index -5 of a 'vt', but 4 precede it");
-  EXPECT_EQ(error_of(square + "f 1/1/1 2/2/1 3/3/1\n"), "9: found index 1 of a 'vn', but 0 precede it");
-  EXPECT_EQ(error_of(square + "f 1 2 3\n"),
+  EXPECT_EQ(error_of(kSquare + "f 1/1 2/2\n"), "9: found a face of 2 corners, expected at least 3");
+  EXPECT_EQ(error_of(kSquare + "f 1/1 2/2 5/3\n"), "9: found index 5 of a 'v', but 4 precede it");
+  EXPECT_EQ(error_of(kSquare + "f 1/1 2/2 0/3\n"), "9: found index 0 of a 'v', but 4 precede it");
+  EXPECT_EQ(error_of(kSquare + "f 1/1 2/2 3/-5\n"), "9: found index -5 of a 'vt', but 4 precede it");
+  EXPECT_EQ(error_of(kSquare + "f 1/1/1 2/2/1 3/3/1\n"), "9: found index 1 of a 'vn', but 0 precede it");
+  EXPECT_EQ(error_of(kSquare + "f 1 2 3\n"),
             "9: found '1' without a texture coordinate, expected v/vt or v/vt/vn");
-  EXPECT_EQ(error_of(square + "f 1//1 2//1 3//1\n"),
+  EXPECT_EQ(error_of(kSquare + "f 1//1 2//1 3//1\n"),
             "9: found '1//1' without a texture coordinate, expected v/vt or v/vt/vn");
-  EXPECT_EQ(error_of(square + "f 1/1/1/1 2/2 3/3\n"), "9: found '1/1/1/1', expected v/vt or v/vt/vn");
-  EXPECT_EQ(error_of(square + "f 1/1/ 2/2/ 3/3/\n"), "9: found '', expected the index of a 'vn'");
-  EXPECT_EQ(error_of(square + "f a/1 2/2 3/3\n"), "9: found 'a', expected the index of a 'v'");
-  EXPECT_EQ(error_of(square + "f 99999999999999999999/1 2/2 3/3\n"),
+  EXPECT_EQ(error_of(kSquare + "f 1/1/1/1 2/2 3/3\n"), "9: found '1/1/1/1', expected v/vt or v/vt/vn");
+  EXPECT_EQ(error_of(kSquare + "f 1/1/ 2/2/ 3/3/\n"), "9: found '', expected the index of a 'vn'");
+  EXPECT_EQ(error_of(kSquare + "f a/1 2/2 3/3\n"), "9: found 'a', expected the index of a 'v'");
+  EXPECT_EQ(error_of(kSquare + "f 99999999999999999999/1 2/2 3/3\n"),
             "9: found '99999999999999999999', expected the index of a 'v'");
   EXPECT_EQ(error_of("curv 0 1 2\n"), "1: found the statement 'curv', expected v, vt, vn or f");
-  EXPECT_EQ(error_of(square + "v 0 -0.5 0\nf 1/1 5/1 2/2 3/3 4/4\n"),
+  EXPECT_EQ(error_of(kSquare + "v 0 -0.5 0\nf 1/1 5/1 2/2 3/3 4/4\n"),
             "10: found a polygon that is not convex, expected convex ones: triangulate it when exporting");
 }
 
 TEST_F(Obj, FilesWithoutFacesAreRefused) {
   const std::string file = path("a.obj");
   EXPECT_EQ(error([&] { load(""); }), file + ": holds no faces");
-  EXPECT_EQ(error([&] { load(square); }), file + ": holds no faces");
-  EXPECT_EQ(error([&] { load(square + "f 1/1 1/1 2/2\n"); }), file + ": holds no faces")
+  EXPECT_EQ(error([&] { load(kSquare); }), file + ": holds no faces");
+  EXPECT_EQ(error([&] { load(kSquare + "f 1/1 1/1 2/2\n"); }), file + ": holds no faces")
       << "only one without area";
   EXPECT_EQ(error([&] { load_obj(path("none.obj")); }),
             path("none.obj") + ": cannot read: No such file or directory");

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "host/surface/random.h"
+#include "host/base/random.h"
 
 namespace mica::host::interpolate_test {
 namespace {
@@ -23,7 +23,7 @@ Surface sampled(int width, int height, Interpolation interpolation, Function fun
 Surface noise(Interpolation interpolation) {
   std::vector<Eigen::Vector2d> normals;
   for (int texel = 0; texel < 7 * 5; ++texel) {
-    normals.push_back({synthesis::random_unit(1, 0, texel) - 0.5, synthesis::random_unit(1, 1, texel) - 0.5});
+    normals.push_back({random_unit(1, 0, texel) - 0.5, random_unit(1, 1, texel) - 0.5});
   }
   return Surface(7, 5, interpolation, normals);
 }
@@ -76,8 +76,8 @@ TEST(Interpolate, IsContinuousAndPeriodic) {
     const double steepest = 20;  // change a texel; a jump would be of the order of 0.1
     for (int sample = 0; sample < 4000; ++sample) {
       // Points on the lines x = k / 8, y = k / 8, x + y = k / 8, which hold every edge of every triangle.
-      const double along = 7 * synthesis::random_unit(2, 0, sample);
-      const double line = std::floor(56 * synthesis::random_unit(2, 1, sample)) / 8;
+      const double along = 7 * random_unit(2, 0, sample);
+      const double line = std::floor(56 * random_unit(2, 1, sample)) / 8;
       const Eigen::Vector2d points[] = {{line, along}, {along, line}, {along, line - along}};
       for (const Eigen::Vector2d& point : points) {
         const Eigen::Vector2d here = normal_at(surface, point);
@@ -97,8 +97,7 @@ TEST(Interpolate, ReproducesLinearNormals) {
   for (const Interpolation interpolation : kContinuous) {
     const Surface surface = sampled(12, 12, interpolation, linear);
     for (int sample = 0; sample < 1000; ++sample) {
-      const double x = 2 + 7 * synthesis::random_unit(3, 0, sample),
-                   y = 2 + 7 * synthesis::random_unit(3, 1, sample);
+      const double x = 2 + 7 * random_unit(3, 0, sample), y = 2 + 7 * random_unit(3, 1, sample);
       EXPECT_LT((normal_at(surface, {x + 0.5, y + 0.5}) - linear(x, y)).norm(), 1e-15);
     }
   }

@@ -169,7 +169,7 @@ TEST_F(MapFileTest, EncodingsOfOneSurfaceAgree) {
   const Surface from_normals = load(map_file(write("n.exr", size, size, 3, normals), Encoding::signed_float));
   EXPECT_LT(largest_difference(from_slopes, from_normals), 2e-7);
   EXPECT_LT(largest_difference(from_heights, from_normals),
-            2 * Waves::k * Waves::k / 6);  // of central differences
+            2 * Waves::k * Waves::k / 6);  // the error of central differences
 }
 
 TEST_F(MapFileTest, GreenDownTurnsTheSecondChannel) {

@@ -61,7 +61,7 @@ inline void expect_no_seam(const Slopes& slopes, int size) {
   EXPECT_LT(seam_score(transposed(slopes, size), size), 4) << "at v = 0";
 }
 
-/// The same bits on 1, 2 and 7 threads.
+/// Expects the same bits on 1, 2 and 7 threads.
 inline void expect_same_on_any_threads(const std::function<std::vector<Eigen::Vector2d>()>& normals) {
   const auto with = [&](std::size_t threads) {
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);

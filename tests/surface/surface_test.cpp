@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 
+#include "host/base/random.h"
 #include "host/surface/disk.h"
 #include "host/surface/export.h"
-#include "host/surface/random.h"
 #include "mica/error.h"
 
 namespace mica::host::surface_test {
@@ -56,14 +56,14 @@ TEST(Random, IsUniformAndUncorrelated) {
   const int count = 100000;
   double sum = 0, squares = 0, neighbours = 0, streams = 0, seeds = 0;
   for (int i = 0; i < count; ++i) {
-    const double x = synthesis::random_unit(7, 3, i) - 0.5;
+    const double x = random_unit(7, 3, i) - 0.5;
     ASSERT_GE(x, -0.5);
     ASSERT_LT(x, 0.5);
     sum += x;
     squares += x * x;
-    neighbours += x * (synthesis::random_unit(7, 3, i + 1) - 0.5);
-    streams += x * (synthesis::random_unit(7, 4, i) - 0.5);
-    seeds += x * (synthesis::random_unit(8, 3, i) - 0.5);
+    neighbours += x * (random_unit(7, 3, i + 1) - 0.5);
+    streams += x * (random_unit(7, 4, i) - 0.5);
+    seeds += x * (random_unit(8, 3, i) - 0.5);
   }
   const double variance = 1.0 / 12, four_sigma = 4 * std::sqrt(1.0 / count);
   EXPECT_NEAR(sum / count, 0, four_sigma * std::sqrt(variance));

@@ -115,7 +115,8 @@ TEST(HardCasesFindOut, WhatIsWrong) {
   const Method& method = methods.get("triangles");
   const auto outcome = [&](float factor) {
     Wrong wrong(triangles.get(), factor);
-    return run_trial(hard_case, surface, &wrong, *make_judge(method, *method.settings(), surface, oracle), {}).outcome;
+    return run_trial(hard_case, surface, &wrong, *make_judge(method, *method.settings(), surface, oracle), {})
+        .outcome;
   };
   EXPECT_EQ(outcome(1), Outcome::within_bound);
   EXPECT_EQ(outcome(1.001f), Outcome::broken);

@@ -5,9 +5,9 @@
 #include <string>
 #include <tuple>
 
+#include "host/methods/beckmanns/beckmann_brdf.h"
 #include "host/methods/beckmanns/beckmann_evaluator.h"
 #include "host/methods/gaussians/mixture_evaluator.h"
-#include "host/methods/beckmanns/beckmann_brdf.h"
 #include "host/reference/beckmann_mixture.h"
 #include "host/reference/gaussian_mixture.h"
 

@@ -8,7 +8,6 @@
 #include "host/methods/pyramid/pyramid_level_batches.h"
 #include "host/methods/pyramid/pyramid_query.h"
 #include "host/reference/oracle.h"
-#include "host/verify/accuracy.h"
 
 namespace mica::host::pyramid_waves_test {
 namespace {

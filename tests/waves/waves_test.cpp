@@ -14,11 +14,11 @@
 namespace mica::host::waves_test {
 namespace {
 
-constexpr int resolution = 64;
+constexpr int kResolution = 64;
 
 Surface bumps(Interpolation interpolation) {
   SpectrumSurface spectrum;
-  spectrum.resolution = resolution;
+  spectrum.resolution = kResolution;
   spectrum.correlation_texels = 4;
   return make_surface({"bumps", spectrum, interpolation}, nullptr);
 }
@@ -30,8 +30,8 @@ std::vector<Query> queries(const Surface& surface) {
     for (const double roughness : {0.005, 0.05}) {
       for (const long texel : {0L, 37L}) {
         Query query;
-        query.footprint.mean_uv = Eigen::Vector2d((texel + 0.7) / resolution, 0.999);
-        query.footprint.cov_uv *= std::pow(sigma_texels / resolution, 2);
+        query.footprint.mean_uv = Eigen::Vector2d((texel + 0.7) / kResolution, 0.999);
+        query.footprint.cov_uv *= std::pow(sigma_texels / kResolution, 2);
         query.half_vector = surface.texel(texel, -1) + Eigen::Vector2d(0.5 * roughness, 0);
         query.roughness = roughness;
         result.push_back(query);

@@ -10,6 +10,7 @@
 #include <limits>
 #include <set>
 
+#include "host/base/random.h"
 #include "host/methods/auto/cost_model.h"
 #include "host/methods/auto/sampled_error.h"
 #include "host/methods/gaussians/mixture_evaluator.h"
@@ -17,7 +18,6 @@
 #include "host/methods/map/map_query.h"
 #include "host/methods/pyramid/pyramid_evaluator.h"
 #include "host/methods/triangles/triangle_evaluator.h"
-#include "host/surface/random.h"
 #include "mica/error.h"
 
 namespace mica::host {
@@ -143,7 +143,7 @@ CalibrationSample calibration_sample(std::size_t count, std::size_t each, int ma
     const QueryClass kind = class_of(query(n), map_width, map_height);
     sample.counts[kind] += scale;
     auto& heap = kept[kind];
-    const std::pair<double, std::size_t> entry(synthesis::random_unit(9, 0, n), n);
+    const std::pair<double, std::size_t> entry(random_unit(9, 0, n), n);
     if (heap.size() == each) {
       if (!(entry < heap.front())) continue;
       std::pop_heap(heap.begin(), heap.end());

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/base/error_norms.h"
 #include "host/methods/auto/auto_evaluator.h"
 #include "host/methods/pyramid/pyramid_painter.h"
 #include "host/methods/triangles/triangle_evaluator.h"
@@ -44,12 +45,9 @@ double largest_error(Painter* painter, Device& device, const Surface& surface, s
     std::vector<Query> queries(pixels.size(), one);
     for (std::size_t k = 0; k < pixels.size(); ++k) queries[k].half_vector = window.half_vector(pixels[k]);
     const std::vector<float> expected = triangles.evaluate(queries);
-    double squares = 0, references = 0;
-    for (std::size_t k = 0; k < pixels.size(); ++k) {
-      squares += std::pow(image[pixels[k]] - expected[k], 2);
-      references += std::pow(expected[k], 2);
-    }
-    if (references > 0) largest = std::max(largest, std::sqrt(squares / references));
+    RelativeL2 error;
+    for (std::size_t k = 0; k < pixels.size(); ++k) error.add(image[pixels[k]], expected[k]);
+    if (error.has_reference()) largest = std::max(largest, error.value());
   }
   return largest;
 }

@@ -7,18 +7,18 @@
 #include <cmath>
 
 #include "host/base/constants.h"
+#include "host/base/random.h"
+#include "host/microfacet/horizon.h"
 #include "host/microfacet/low_discrepancy.h"
 #include "host/microfacet/masking.h"
 #include "host/microfacet/visible_normals.h"
-#include "host/scene/shading.h"
 #include "host/surface/interpolate.h"
-#include "host/surface/random.h"
 
 namespace mica::host {
 namespace {
 
 bool above_horizon(const Eigen::Vector3d& direction) {
-  return direction.z() >= min_cosine;
+  return direction.z() >= kMinCosine;
 }
 
 /// Normals of the lobe about n' that directions are drawn from.
@@ -77,8 +77,7 @@ std::vector<BrdfSample> NormalMapBrdf::sample(const std::vector<SampleQuery>& qu
   std::vector<BrdfSample> samples(queries.size());
   tbb::parallel_for(std::size_t{0}, queries.size(), [&](std::size_t n) {
     const std::uint64_t key = queries[n].key;
-    samples[n] =
-        draw(queries[n].from, {synthesis::random_unit(key, 0, 0), synthesis::random_unit(key, 1, 0)});
+    samples[n] = draw(queries[n].from, {random_unit(key, 0, 0), random_unit(key, 1, 0)});
   });
   return samples;
 }

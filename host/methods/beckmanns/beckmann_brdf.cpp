@@ -7,12 +7,12 @@
 #include <cmath>
 
 #include "host/base/constants.h"
+#include "host/base/random.h"
 #include "host/base/stopwatch.h"
 #include "host/methods/gaussians/mixture_evaluator.h"
 #include "host/methods/map/map_query.h"
 #include "host/microfacet/masking.h"
 #include "host/surface/disk.h"
-#include "host/surface/random.h"
 #include "mica/error.h"
 
 namespace mica::host {
@@ -56,7 +56,7 @@ std::array<double, 4> even_uniforms(std::uint64_t key, int n) {
                                            0.5385972572236101};
   std::array<double, 4> uniforms{};
   for (std::size_t k = 0; k < uniforms.size(); ++k) {
-    const double place = synthesis::random_unit(key, k, 0) + steps[k] * n;
+    const double place = random_unit(key, k, 0) + steps[k] * n;
     uniforms[k] = place - std::floor(place);
   }
   return uniforms;
@@ -162,8 +162,7 @@ std::vector<BrdfSample> BeckmannBrdf::sample(const std::vector<SampleQuery>& que
     drawn[n] = {from.footprint, from.view, Eigen::Vector3d::Zero(), from.roughness};
     if (below_horizon(from.view)) return;
     std::array<double, 4> uniforms{};
-    for (std::size_t k = 0; k < uniforms.size(); ++k)
-      uniforms[k] = synthesis::random_unit(queries[n].key, 2, k);
+    for (std::size_t k = 0; k < uniforms.size(); ++k) uniforms[k] = random_unit(queries[n].key, 2, k);
     drawn[n].light =
         mirrored(from.view, sampler_.draw(from.footprint, from.roughness, uniforms, queries[n].key));
   });
@@ -184,7 +183,7 @@ std::vector<BrdfSample> BeckmannBrdf::sample(const std::vector<SampleQuery>& que
 Albedo BeckmannBrdf::albedo(const ViewQuery& from) {
   std::vector<Eigen::Vector3d> normals(kAlbedoSamples);
   tbb::parallel_for(0, kAlbedoSamples, [&](int k) {
-    normals[k] = sampler_.draw(from.footprint, from.roughness, even_uniforms(1, k), synthesis::mix(k));
+    normals[k] = sampler_.draw(from.footprint, from.roughness, even_uniforms(1, k), mix_bits(k));
   });
   std::vector<BrdfQuery> seen;
   std::vector<double> facing;

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "host/base/constants.h"
-#include "host/surface/random.h"
+#include "host/base/random.h"
 
 namespace mica::host {
 namespace {
@@ -73,11 +73,11 @@ LatticePoint pick_on_lattice(const Eigen::Vector2d& mean, const Eigen::Matrix2d&
     point.j = pick_on_lattice(mean.y(), std::sqrt(row_variance), row_uniform);
     const double column_mean = mean.x() + shear * (static_cast<double>(point.j) - mean.y());
     const double accepted = (1 + ripple(column_variance, column_mean)) / (1 + largest_ripple);
-    if (synthesis::random_unit(key, 0, attempt) < accepted) {
+    if (random_unit(key, 0, attempt) < accepted) {
       point.i = pick_on_lattice(column_mean, std::sqrt(column_variance), uniforms[1]);
       return point;
     }
-    row_uniform = synthesis::random_unit(key, 1, attempt);
+    row_uniform = random_unit(key, 1, attempt);
   }
 }
 

@@ -12,12 +12,11 @@ namespace {
 class CavityMethodSettings : public SettingsOf<CavityMethodSettings> {
  public:
   void visit(SettingVisitor& visitor) override {
-    visitor.choice("compensation", "Of cavities, where light goes that bounces more than once", compensation,
-                   compensation_names());
+    visitor.choice("compensation", "Of cavities, where light goes that bounces more than once", compensation);
     visitor.choice("energy",
                    "Of cavities, what one bounce loses: of every seed under the footprint, or by a table of "
                    "roughness and angle",
-                   energy, lost_energy_names());
+                   energy);
     if (visitor.source() == SettingSource::job) {
       visitor.number("spacing", "Of seeds, in texels: 1 or 0.5", spacing_texels, {0, 1, true});
       per_texel = spacing_texels == 1 ? 1 : 2;

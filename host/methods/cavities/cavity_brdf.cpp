@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/base/random.h"
 #include "host/base/stopwatch.h"
 #include "host/methods/beckmanns/lobe_sampler.h"
 #include "host/methods/map/map_query.h"
-#include "host/surface/random.h"
 #include "mica/error.h"
 
 namespace mica::host {
@@ -33,11 +33,6 @@ std::int32_t wrap(long index, long period) {
 }
 
 }  // namespace
-
-const std::vector<std::string>& lost_energy_names() {
-  static const std::vector<std::string> names = {"exact", "table"};
-  return names;
-}
 
 CavityBrdf::CavityBrdf(Device& device, const Surface& surface, const CavitySettings& settings)
     : compensation_(settings.compensation), cutoff_(cutoff_for(settings.cutoff_error)) {
@@ -127,9 +122,9 @@ std::vector<Eigen::Vector3d> CavityBrdf::draw(const std::vector<SampleQuery>& qu
     const SampleQuery& query = queries[n];
     draws[n] = to_cavity_query(query.from, cavities_, cutoff_);
     const SeedWeights weights = seed_weights(query.from.footprint, cavities_);
-    const LatticePoint seed = pick_on_lattice(
-        weights.mean_seeds, weights.cov_seeds,
-        {synthesis::random_unit(query.key, 2, 0), synthesis::random_unit(query.key, 2, 1)}, query.key);
+    const LatticePoint seed =
+        pick_on_lattice(weights.mean_seeds, weights.cov_seeds,
+                        {random_unit(query.key, 2, 0), random_unit(query.key, 2, 1)}, query.key);
     draws[n].seed_i = wrap(seed.i, seeds_x), draws[n].seed_j = wrap(seed.j, seeds_y);
     draws[n].key_low = static_cast<std::int32_t>(query.key);
     draws[n].key_high = static_cast<std::int32_t>(query.key >> 32);

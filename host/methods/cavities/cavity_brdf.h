@@ -15,9 +15,6 @@
 
 namespace mica::host {
 
-/// "exact" and "table", in the order of LostEnergy.
-const std::vector<std::string>& lost_energy_names();
-
 struct CavitySettings {
   Compensation compensation = Compensation::diffuse;
   LostEnergy energy = LostEnergy::exact;

@@ -14,11 +14,6 @@ double normal_cdf(double x) {
 
 }  // namespace
 
-const std::vector<std::string>& compensation_names() {
-  static const std::vector<std::string> names = {"diffuse", "specular"};
-  return names;
-}
-
 double specular_lobe_sigma(double roughness) {
   return 2 * roughness;
 }

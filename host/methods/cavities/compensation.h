@@ -1,15 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <string>
-#include <vector>
 
 #include "host/base/cavities.h"
 
 namespace mica::host {
-
-/// "diffuse" and "specular", in the order of Compensation.
-const std::vector<std::string>& compensation_names();
 
 /// f_2+(o, i) max(i.g, 0) per steradian, which integrates to 1 over the hemisphere for every view above the
 /// horizon. The specular lobe is a Gaussian of (i_x, i_y) about -(o_x, o_y), cut at the unit circle.

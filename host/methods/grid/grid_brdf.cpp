@@ -5,16 +5,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/device/launch.h"
 #include "host/microfacet/glint_masking.h"
+#include "host/microfacet/horizon.h"
 #include "mica/error.h"
 
 namespace mica::host {
 namespace {
 
-constexpr double kLeastCosine = 1e-6;  // as of scenes: closer to the horizon nothing is seen or lit
-
 bool is_above(const Eigen::Vector3d& direction) {
-  return direction.z() >= kLeastCosine;
+  return direction.z() >= kMinCosine;
 }
 
 }  // namespace
@@ -46,21 +46,15 @@ std::vector<std::vector<float>> GridBrdf::run(cl::Kernel* kernel, const GridBatc
   const cl::Buffer fields = device_.upload(batch.fields, "a batch of queries");
   const std::size_t row_bytes = batch.pitch * sizeof(float);
   const cl::Buffer out = device_.buffer(rows * row_bytes, CL_MEM_WRITE_ONLY, "results of a batch");
-  try {
-    kernel->setArg(0, fields);
-    kernel->setArg(1, static_cast<cl_int>(batch.pitch));
-    kernel->setArg(2, out);
-    const std::size_t items = device_.wave_form() == WaveForm::items ? batch.pitch : batch.pitch / kWaveLanes;
-    cl::Event done;
-    device_.queue().enqueueNDRangeKernel(*kernel, cl::NullRange, items, kWaveLanes, nullptr, &done);
+  reporting("running grid_brdf", [&] {
+    const cl::Event done =
+        launch(device_, *kernel, launch_size(device_.wave_form(), batch.pitch / kWaveLanes), fields,
+               static_cast<cl_int>(batch.pitch), out);
     for (std::size_t row = 0; row < rows; ++row)
       device_.queue().enqueueReadBuffer(out, CL_TRUE, row * row_bytes, count * sizeof(float),
                                         result[row].data());
-    device_seconds_ += 1e-9 * static_cast<double>(done.getProfilingInfo<CL_PROFILING_COMMAND_END>() -
-                                                  done.getProfilingInfo<CL_PROFILING_COMMAND_START>());
-  } catch (const cl::Error& error) {
-    throw opencl_error(error, "running grid_brdf");
-  }
+    device_seconds_ += seconds_of(done);
+  });
   return result;
 }
 

@@ -6,17 +6,10 @@
 #include <cmath>
 #include <deque>
 
+#include "host/device/launch.h"
 #include "mica/error.h"
 
 namespace mica::host {
-namespace {
-
-double seconds_of(const cl::Event& event) {
-  return 1e-9 * static_cast<double>(event.getProfilingInfo<CL_PROFILING_COMMAND_END>() -
-                                    event.getProfilingInfo<CL_PROFILING_COMMAND_START>());
-}
-
-}  // namespace
 
 std::string grid_kernel_options(Distribution distribution, const GridFeatures& features) {
   return fmt::format("-DMICA_DISTRIBUTION={} -DMICA_GLINT_COLORS={} -DMICA_GLINT_ROULETTE={}",
@@ -35,12 +28,10 @@ class PendingGrid : public PendingDensities {
   }
 
   std::vector<float> wait() override {
-    try {
+    reporting("evaluating grid", [&] {
       if (!done.empty()) cl::Event::waitForEvents(done);
       for (const cl::Event& kernel : kernels) *device_seconds += seconds_of(kernel);
-    } catch (const cl::Error& error) {
-      throw opencl_error(error, "evaluating grid");
-    }
+    });
     for (std::vector<float>& row : rows) {
       for (float& density : row) {
         if (!std::isfinite(density)) throw DeviceError("evaluating grid: a density is not finite");
@@ -97,14 +88,10 @@ void GridEvaluator::enqueue(GridBatch batch, std::size_t first, std::size_t coun
   const std::size_t row_bytes = kept.pitch * sizeof(float);
   const cl::Buffer densities =
       device_.buffer(row_bytes * pending->rows.size(), CL_MEM_WRITE_ONLY, "a batch of densities");
-  try {
+  reporting("running grid", [&] {
     device_.queue().enqueueWriteBuffer(fields, CL_FALSE, 0, bytes, kept.fields.data());
-    kernel_.setArg(0, fields);
-    kernel_.setArg(1, static_cast<cl_int>(kept.pitch));
-    kernel_.setArg(2, densities);
-    const std::size_t items = wave_form_ == WaveForm::items ? kept.pitch : kept.pitch / kWaveLanes;
-    cl::Event kernel_done;
-    device_.queue().enqueueNDRangeKernel(kernel_, cl::NullRange, items, kWaveLanes, nullptr, &kernel_done);
+    const cl::Event kernel_done = launch(device_, kernel_, launch_size(wave_form_, kept.pitch / kWaveLanes),
+                                         fields, static_cast<cl_int>(kept.pitch), densities);
     pending->buffers.insert(pending->buffers.end(), {fields, densities});
     pending->kernels.push_back(kernel_done);
     for (std::size_t color = 0; color < pending->rows.size(); ++color) {
@@ -113,9 +100,7 @@ void GridEvaluator::enqueue(GridBatch batch, std::size_t first, std::size_t coun
                                         &pending->done.emplace_back());
     }
     device_.queue().flush();
-  } catch (const cl::Error& error) {
-    throw opencl_error(error, "running grid");
-  }
+  });
 }
 
 }  // namespace mica::host

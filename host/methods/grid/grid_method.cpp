@@ -106,7 +106,7 @@ GridFeatures glint_features(const GlintsDescription& glints) {
 void GridSettings::visit(SettingVisitor& visitor) {
   const bool of_job = visitor.source() == SettingSource::job;
   visitor.choice("distribution", "Smooth distribution that glints add up to: ggx or beckmann",
-                 glints_.distribution, {"beckmann", "ggx"});
+                 glints_.distribution);
   visitor.one_or_two("alpha", "Roughness of the smooth distribution, along u and v, 1e-4 to 1", glints_.alpha,
                      {1e-4, 1});
   visitor.number("density", "Cells per unit area of uv, of which pi/4 hold a glint, 1 to 1e12",
@@ -116,11 +116,9 @@ void GridSettings::visit(SettingVisitor& visitor) {
                  microroughness_, {1e-4, 1});
   visitor.number("stretch", "Of each glint along u, 1/64 to 64", glints_.stretch, {1.0 / 64, 64});
   visitor.seed("seed", "Of the glints of a grid", glints_.seed);
-  if (of_job)
-    visitor.choice("mapping", "Over uv or on three planes of the world", glints_.mapping,
-                   {"uv", "triplanar"});
+  if (of_job) visitor.choice("mapping", "Over uv or on three planes of the world", glints_.mapping);
   visitor.choice(of_job ? "masking" : "glint-masking", "Of the BRDF of glints: smith or cavity",
-                 glints_.masking, {"smith", "cavity"});
+                 glints_.masking);
   visitor.colors("colors", "Each glint has one of them, at random", glints_.colors, kMostColors);
   GlintTextures& textures = glints_.textures;
   visitor.file("textures", "density", "Multiplies the density", textures.density);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/device/launch.h"
 #include "kernels/images/image_types.h"
 
 namespace mica::host {
@@ -67,27 +68,18 @@ void ImageBatches::draw_batch(const mica_pyramid_query* queries, std::size_t cou
   const std::size_t image_floats =
       static_cast<std::size_t>(on_device.squares) * on_device.squares * kWaveLanes;
   const std::size_t query_bytes = count * sizeof(mica_pyramid_query);
-  const auto bands = static_cast<int>(count) * ((window.pixels + MICA_IMAGE_BAND - 1) / MICA_IMAGE_BAND);
+  const std::size_t bands =
+      count * ((static_cast<std::size_t>(window.pixels) + MICA_IMAGE_BAND - 1) / MICA_IMAGE_BAND);
   const cl::Buffer input = device_.buffer(query_bytes, CL_MEM_READ_ONLY, "footprints of images");
   const cl::Buffer output =
       device_.buffer(count * image_floats * sizeof(float), CL_MEM_READ_WRITE, "a batch of images");
   std::vector<float> squares(count * image_floats);
-  try {
+  reporting("running " + method_, [&] {
     device_.queue().enqueueWriteBuffer(input, CL_TRUE, 0, query_bytes, queries);
-    kernel_.setArg(0, input);
-    kernel_.setArg(1, static_cast<cl_int>(bands));
-    kernel_.setArg(2, sizeof on_device, &on_device);
-    kernel_.setArg(3, sizeof grid_, &grid_);
-    cl_uint argument = 4;
-    for (const cl::Buffer& buffer : structure_) kernel_.setArg(argument++, buffer);
-    kernel_.setArg(argument, output);
-    const bool vectors = wave_form_ == WaveForm::vectors;  // a band is much work: one a work-group
-    device_.queue().enqueueNDRangeKernel(kernel_, cl::NullRange, bands * (vectors ? 1 : kWaveLanes),
-                                         vectors ? 1 : kWaveLanes);
+    const LaunchSize size = launch_size(wave_form_, bands, 1);  // a band is much work: one a work-group
+    launch(device_, kernel_, size, input, static_cast<cl_int>(bands), on_device, grid_, structure_, output);
     device_.queue().enqueueReadBuffer(output, CL_TRUE, 0, squares.size() * sizeof(float), squares.data());
-  } catch (const cl::Error& error) {
-    throw opencl_error(error, "running " + method_);
-  }
+  });
   if (!std::all_of(squares.begin(), squares.end(), [](float value) { return std::isfinite(value); }))
     throw DeviceError("drawing by " + method_ + ": a density is not finite");
   tbb::parallel_for(std::size_t{0}, count, [&](std::size_t n) {

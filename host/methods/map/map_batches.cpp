@@ -5,20 +5,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
+
+#include "host/device/launch.h"
 
 namespace mica::host {
 namespace {
 
-using device_types::mica_cavity_query;
-using device_types::mica_lobe_query;
 using device_types::mica_map_query;
-using device_types::mica_mixture_query;
-using device_types::mica_patch_query;
-using device_types::mica_pyramid_query;
-using device_types::mica_smooth_query;
-
-constexpr std::size_t kCpuGroup = 16;  // queries a work-group on a CPU
 
 std::uint64_t spread_bits(std::uint32_t x) {
   std::uint64_t v = x & 0xffffu;
@@ -28,67 +23,54 @@ std::uint64_t spread_bits(std::uint32_t x) {
   return (v | (v << 1)) & 0x55555555u;
 }
 
-mica_map_query& place_of(mica_map_query& query) {
-  return query;
-}
-mica_map_query& place_of(mica_mixture_query& query) {
-  return query.map;
-}
-mica_map_query& place_of(mica_lobe_query& query) {
-  return query.map;
-}
-mica_map_query& place_of(mica_cavity_query& query) {
-  return query.map;
-}
-mica_map_query& place_of(mica_patch_query& query) {
-  return query.lobe.map;
-}
-mica_map_query& place_of(mica_pyramid_query& query) {
-  return query.map;
-}
-mica_map_query& place_of(mica_smooth_query& query) {
-  return query.map;
-}
+/// Queries one after another, each of which begins with a mica_map_query.
+struct QueryBytes {
+  const unsigned char* bytes;
+  std::size_t query_bytes, count;
 
-/// Sorts by the Morton code of the tile under the mean: neighbours in a batch then read the same texels.
-/// @return each one's place before. @param batch_queries which slots count from zero in.
-template <typename DeviceQuery>
-std::vector<std::uint32_t> sort_by_footprint(std::size_t batch_queries, std::vector<DeviceQuery>* queries) {
-  const std::size_t count = queries->size();
-  std::vector<std::uint64_t> keys(count);  // the code, then the place: equal codes keep their order
-  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t n) {
-    const mica_map_query& q = place_of((*queries)[n]);
-    const std::uint64_t morton = spread_bits(q.mean_i / device_types::MICA_TILE) |
-                                 (spread_bits(q.mean_j / device_types::MICA_TILE) << 1);
+  const unsigned char* query(std::size_t n) const { return bytes + n * query_bytes; }
+  mica_map_query place(std::size_t n) const {
+    mica_map_query place;
+    std::memcpy(&place, query(n), sizeof place);
+    return place;
+  }
+};
+
+/// The queries' order by the Morton code of the tile under the mean: neighbours in a batch then read the same
+/// texels.
+std::vector<std::uint32_t> order_by_footprint(const QueryBytes& queries) {
+  std::vector<std::uint64_t> keys(queries.count);  // the code, then the place: equal codes keep their order
+  tbb::parallel_for(std::size_t{0}, queries.count, [&](std::size_t n) {
+    const mica_map_query place = queries.place(n);
+    const std::uint64_t morton = spread_bits(place.mean_i / device_types::MICA_TILE) |
+                                 (spread_bits(place.mean_j / device_types::MICA_TILE) << 1);
     keys[n] = morton << 32 | n;
   });
   tbb::parallel_sort(keys);
-  std::vector<DeviceQuery> sorted(count);
-  std::vector<std::uint32_t> order(count);
-  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t n) {
-    order[n] = static_cast<std::uint32_t>(keys[n]);
-    sorted[n] = (*queries)[order[n]];
-    place_of(sorted[n]).slot = static_cast<std::int32_t>(n % batch_queries);
-  });
-  queries->swap(sorted);
+  std::vector<std::uint32_t> order(queries.count);
+  tbb::parallel_for(std::size_t{0}, queries.count,
+                    [&](std::size_t n) { order[n] = static_cast<std::uint32_t>(keys[n]); });
   return order;
 }
 
-double seconds_of(const cl::Event& event) {
-  return 1e-9 * static_cast<double>(event.getProfilingInfo<CL_PROFILING_COMMAND_END>() -
-                                    event.getProfilingInfo<CL_PROFILING_COMMAND_START>());
-}
-
-std::size_t round_up(std::size_t n, std::size_t multiple) {
-  return (n + multiple - 1) / multiple * multiple;
+/// @param batch_queries which slots count from zero in.
+std::vector<unsigned char> sorted(const QueryBytes& queries, const std::vector<std::uint32_t>& order,
+                                  std::size_t batch_queries) {
+  std::vector<unsigned char> result(queries.count * queries.query_bytes);
+  tbb::parallel_for(std::size_t{0}, queries.count, [&](std::size_t n) {
+    unsigned char* const query = result.data() + n * queries.query_bytes;
+    const auto slot = static_cast<std::int32_t>(n % batch_queries);
+    std::memcpy(query, queries.query(order[n]), queries.query_bytes);
+    std::memcpy(query + offsetof(mica_map_query, slot), &slot, sizeof slot);
+  });
+  return result;
 }
 
 }  // namespace
 
 /// Queries on the device, in the order in which they run, and what it takes to put the answers back into
 /// theirs.
-template <typename DeviceQuery>
-class MapBatches<DeviceQuery>::Densities : public PendingDensities {
+class QueryBatches::Densities : public PendingDensities {
  public:
   // The device may still be reading and writing our memory when an error unwinds.
   ~Densities() override {
@@ -96,12 +78,10 @@ class MapBatches<DeviceQuery>::Densities : public PendingDensities {
   }
 
   std::vector<float> wait() override {
-    try {
+    reporting("evaluating " + method, [&] {
       if (!done.empty()) cl::Event::waitForEvents(done);
       for (const cl::Event& kernel : kernels) *device_seconds += seconds_of(kernel);
-    } catch (const cl::Error& error) {
-      throw opencl_error(error, "evaluating " + method);
-    }
+    });
     // A density is finite and not negative: rounding may leave -0 or a denormal, never more. Several numbers
     // are something else, and have signs.
     const float least = answers == 1 ? 0.0f : -std::numeric_limits<float>::infinity();
@@ -117,93 +97,70 @@ class MapBatches<DeviceQuery>::Densities : public PendingDensities {
   }
 
   std::string method;
-  std::size_t answers = 1;           // a query
-  std::vector<DeviceQuery> queries;  // alive until the device has read them
-  std::vector<std::uint32_t> order;  // of the query at each place
+  std::size_t answers = 1;             // a query
+  std::vector<unsigned char> queries;  // alive until the device has read them
+  std::vector<std::uint32_t> order;    // of the query at each place
   std::vector<float> results;
   std::vector<cl::Buffer> buffers;  // kept, so that memory does not depend on who is faster, host or device
   std::vector<cl::Event> kernels, done;
   std::shared_ptr<double> device_seconds;
 };
 
-template <typename DeviceQuery>
-MapBatches<DeviceQuery>::MapBatches(Device& device, const MapStructure& map, const std::string& method,
-                                    const std::string& options, WaveForm wave_form, std::size_t batch_queries)
-    : MapBatches(device, map.grid,
-                 {device.upload(map.normals, "the map's normals"),
-                  device.upload(map.block_nodes, "the map's bounds"),
-                  device.upload(map.tile_nodes, "the map's bounds")},
-                 map.bytes(), method, options, wave_form, batch_queries) {}
+QueryBatches::QueryBatches(Device& device, std::size_t query_bytes, const MapStructure& map,
+                           const std::string& method, const std::string& options, WaveForm wave_form,
+                           std::size_t batch_queries)
+    : QueryBatches(device, query_bytes, map.grid,
+                   {device.upload(map.normals, "the map's normals"),
+                    device.upload(map.block_nodes, "the map's bounds"),
+                    device.upload(map.tile_nodes, "the map's bounds")},
+                   map.bytes(), method, options, wave_form, batch_queries, 1) {}
 
-template <typename DeviceQuery>
-MapBatches<DeviceQuery>::MapBatches(Device& device, const device_types::mica_map_grid& grid,
-                                    std::vector<cl::Buffer> structure, std::size_t bytes,
-                                    const std::string& method, const std::string& options, WaveForm wave_form,
-                                    std::size_t batch_queries, std::size_t answers)
+QueryBatches::QueryBatches(Device& device, std::size_t query_bytes, const device_types::mica_map_grid& grid,
+                           std::vector<cl::Buffer> structure, std::size_t structure_bytes,
+                           const std::string& method, const std::string& options, WaveForm wave_form,
+                           std::size_t batch_queries, std::size_t answers)
     : device_(device),
       method_(method),
       wave_form_(wave_form),
       grid_(grid),
-      batch_queries_(
-          std::clamp<std::size_t>(batch_queries, 1, device.info().allocation_bytes / sizeof(DeviceQuery))),
-      device_bytes_(bytes),
+      query_bytes_(query_bytes),
+      batch_queries_(std::clamp<std::size_t>(batch_queries, 1, device.info().allocation_bytes / query_bytes)),
+      device_bytes_(structure_bytes),
       answers_(answers),
       structure_(std::move(structure)),
       kernel_(device.kernel(method, options, wave_form)) {}
 
-template <typename DeviceQuery>
-std::unique_ptr<PendingDensities> MapBatches<DeviceQuery>::start(std::vector<DeviceQuery> queries) {
+std::unique_ptr<PendingDensities> QueryBatches::start(const void* queries, std::size_t count) {
+  const QueryBytes bytes{static_cast<const unsigned char*>(queries), query_bytes_, count};
   auto pending = std::make_unique<Densities>();
-  pending->order = sort_by_footprint(batch_queries_, &queries);
+  pending->order = order_by_footprint(bytes);
   pending->method = method_;
-  pending->queries = std::move(queries);
+  pending->queries = sorted(bytes, pending->order, batch_queries_);
   pending->device_seconds = device_seconds_;
-  const std::size_t count = pending->queries.size();
   pending->answers = answers_;
   pending->results.resize(count * answers_);
-  for (std::size_t first = 0; first < count; first += batch_queries_) enqueue(first, pending.get());
+  for (std::size_t first = 0; first < count; first += batch_queries_)
+    enqueue(first, std::min(batch_queries_, count - first), pending.get());
   return pending;
 }
 
-template <typename DeviceQuery>
-void MapBatches<DeviceQuery>::enqueue(std::size_t first, Densities* pending) {
-  const std::vector<DeviceQuery>& queries = pending->queries;
-  const std::size_t count = std::min(batch_queries_, queries.size() - first);
-  const cl::Buffer input =
-      device_.buffer(count * sizeof(DeviceQuery), CL_MEM_READ_ONLY, "a batch of queries");
-  const std::size_t output_bytes = count * answers_ * sizeof(float);
+void QueryBatches::enqueue(std::size_t first, std::size_t count, Densities* pending) {
+  const std::size_t input_bytes = count * query_bytes_, output_bytes = count * answers_ * sizeof(float);
+  const cl::Buffer input = device_.buffer(input_bytes, CL_MEM_READ_ONLY, "a batch of queries");
   const cl::Buffer output = device_.buffer(output_bytes, CL_MEM_WRITE_ONLY, "a batch of densities");
-  try {
-    device_.queue().enqueueWriteBuffer(input, CL_FALSE, 0, count * sizeof(DeviceQuery),
-                                       queries.data() + first);
-    kernel_.setArg(0, input);
-    kernel_.setArg(1, static_cast<cl_int>(count));
-    kernel_.setArg(2, sizeof grid_, &grid_);
-    cl_uint argument = 3;
-    for (const cl::Buffer& buffer : structure_) kernel_.setArg(argument++, buffer);
-    kernel_.setArg(argument, output);
-    const bool vectors = wave_form_ == WaveForm::vectors;
-    const std::size_t global = vectors ? round_up(count, kCpuGroup) : count * kWaveLanes;
-    const std::size_t local = vectors ? kCpuGroup : kWaveLanes;
-    cl::Event kernel_done, read_done;
-    device_.queue().enqueueNDRangeKernel(kernel_, cl::NullRange, global, local, nullptr, &kernel_done);
+  reporting("running " + method_, [&] {
+    device_.queue().enqueueWriteBuffer(input, CL_FALSE, 0, input_bytes,
+                                       pending->queries.data() + first * query_bytes_);
+    cl::Event read_done;
+    const cl::Event kernel_done = launch(device_, kernel_, launch_size(wave_form_, count), input,
+                                         static_cast<cl_int>(count), grid_, structure_, output);
     device_.queue().enqueueReadBuffer(output, CL_FALSE, 0, output_bytes,
                                       pending->results.data() + first * answers_, nullptr, &read_done);
     pending->buffers.insert(pending->buffers.end(), {input, output});
     pending->kernels.push_back(kernel_done);
     pending->done.push_back(read_done);
     device_.queue().flush();
-  } catch (const cl::Error& error) {
-    throw opencl_error(error, "running " + method_);
-  }
+  });
 }
-
-template class MapBatches<mica_map_query>;
-template class MapBatches<mica_mixture_query>;
-template class MapBatches<mica_lobe_query>;
-template class MapBatches<mica_cavity_query>;
-template class MapBatches<mica_patch_query>;
-template class MapBatches<mica_pyramid_query>;
-template class MapBatches<mica_smooth_query>;
 
 }  // namespace mica::host

@@ -6,12 +6,12 @@
 #include <numeric>
 
 #include "host/base/constants.h"
+#include "host/base/random.h"
 #include "host/base/stopwatch.h"
 #include "host/methods/gaussians/mixture_evaluator.h"
 #include "host/methods/map/map_query.h"
 #include "host/methods/triangles/triangle_evaluator.h"
-#include "host/surface/random.h"
-#include "host/verify/accuracy.h"
+#include "host/surface/texel_footprint.h"
 
 namespace mica::host {
 namespace {
@@ -161,7 +161,7 @@ std::vector<Query> PyramidEvaluator::culling_sample(const PyramidChoice& choice)
       std::exp2(0.25) * cell_width(choice.cell_class, settings_.precision) / settings_.precision.cell_ratio;
   std::vector<Query> queries(samples);
   for (int n = 0; n < samples; ++n) {
-    const auto random = [n](std::uint64_t stream) { return synthesis::random_unit(0, stream, n); };
+    const auto random = [n](std::uint64_t stream) { return random_unit(0, stream, n); };
     Query& query = queries[n];
     query.roughness = std::min(roughness, 1.0);
     query.footprint = make_footprint(surface_, {random(0), random(1)}, sigma, sigma, 0);

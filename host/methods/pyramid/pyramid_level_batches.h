@@ -8,6 +8,7 @@
 #include "host/methods/evaluator.h"
 #include "host/methods/map/map_batches.h"
 #include "host/methods/pyramid/moment_pyramid.h"
+#include "kernels/pyramid/pyramid_types.h"
 
 namespace mica::host {
 

@@ -1,4 +1,5 @@
 // `auto`: that it keeps its tolerance, says so, and answers the same whatever the batch.
+#include "host/base/error_norms.h"
 #include "host/methods/auto/auto_evaluator.h"
 
 #include <gtest/gtest.h>
@@ -7,11 +8,11 @@
 #include <cmath>
 #include <map>
 
+#include "host/base/random.h"
 #include "host/methods/auto/sampled_error.h"
 #include "host/methods/registry.h"
 #include "host/reference/oracle.h"
-#include "host/surface/random.h"
-#include "host/verify/accuracy.h"
+#include "host/surface/texel_footprint.h"
 #include "mica/error.h"
 #include "tests/methods/bilinear_samples.h"
 
@@ -31,7 +32,7 @@ Surface spectrum() {
 std::vector<Query> mixed_queries(const Surface& surface, int count, std::uint64_t seed) {
   std::vector<Query> queries(count);
   for (int n = 0; n < count; ++n) {
-    const auto random = [&](std::uint64_t stream) { return synthesis::random_unit(seed, stream, n); };
+    const auto random = [&](std::uint64_t stream) { return random_unit(seed, stream, n); };
     const double sigma = 2 << (n % 3 * 2);
     queries[n].footprint = make_footprint(surface, {random(0), random(1)}, sigma, sigma, 0);
     queries[n].half_vector = surface.texel(std::lround(random(0) * 256), std::lround(random(1) * 256)) +
@@ -56,7 +57,7 @@ std::unique_ptr<AutoEvaluator> calibrated(const Surface& surface, double toleran
   return chooser;
 }
 
-/// Of queries that it was not calibrated with, against the oracle; the tolerance is kept at 95% confidence.
+/// Queries that it was not calibrated with keep the tolerance against the oracle, at 95% confidence.
 TEST(Auto, KeepsItsToleranceOnQueriesThatItHasNotSeen) {
   const Surface surface = spectrum();
   const std::vector<Query> fresh = mixed_queries(surface, 120, 11);
@@ -128,7 +129,8 @@ TEST(Auto, LooksAtMoreSamplesWhereFewShowTooMuch) {
   const Surface surface = spectrum();
   std::vector<Query> queries = queries_of_8_texels(surface, 4096);
   const std::vector<float> expected = make_evaluator("triangles", device(), surface)->evaluate(queries),
-                           densities = make_evaluator("gaussians", device(), surface, {{"elements", "1"}})->evaluate(queries);
+                           densities = make_evaluator("gaussians", device(), surface, {{"elements", "1"}})
+                                           ->evaluate(queries);
   double largest = 0;
   std::ptrdiff_t worst = 0;
   for (std::ptrdiff_t first = 0; first < 4096; first += 256) {
@@ -173,7 +175,7 @@ TEST(Auto, AnswersAreTheSameInAnyBatch) {
   }
 }
 
-/// Of queries that it has not seen: errors are no larger than estimated, in root mean square; of bright and
+/// Of queries that it has not seen, errors are no larger than estimated, in root mean square; of bright and
 /// of dim ones, which the calibration did not tell apart, no more than twice as large.
 TEST(Auto, EstimatesTheErrorOfEachQuery) {
   const Surface surface = spectrum();

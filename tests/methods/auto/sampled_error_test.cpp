@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "host/surface/random.h"
+#include "host/base/random.h"
 
 namespace mica::host::sampled_error_test {
 namespace {
@@ -24,20 +24,18 @@ TEST(SampledError, OfExactDensitiesIsZeroAndOfNothingInfinite) {
   EXPECT_EQ(sampled_error({0, 0}, {0, 0}, 2).upper_bound, std::numeric_limits<double>::infinity());
 }
 
-/// Of many samples of queries with log-normal errors, for which the largest hundredth makes an eighth of the
+/// Many samples of queries with log-normal errors, for which the largest hundredth makes an eighth of the
 /// squares: bounds at 95% hold for nearly as many, and the deviation is that of the errors.
 TEST(SampledError, BoundsHoldWhereFewQueriesMakeMostOfTheError) {
   constexpr int samples = 1000, count = 256;
-  constexpr double sigma = 0.6;  // of the errors' logarithm
+  constexpr double sigma = 0.6;  // standard deviation of the errors' logarithm
   const double truth = 0.01 * std::exp(sigma * sigma);
   int above = 0, below = 0;
   double square = 0, deviations = 0;
   for (int sample = 0; sample < samples; ++sample) {
     std::vector<float> densities(count), expected(count, 1.0f);
     for (int n = 0; n < count; ++n) {
-      const auto random = [&](std::uint64_t stream) {
-        return synthesis::random_unit(3, stream, sample * count + n);
-      };
+      const auto random = [&](std::uint64_t stream) { return random_unit(3, stream, sample * count + n); };
       const double normal = std::sqrt(-2 * std::log(1 - random(0))) * std::cos(6.283185307179586 * random(1));
       densities[n] = static_cast<float>(1 + 0.01 * std::exp(sigma * normal));
     }

@@ -6,7 +6,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "host/surface/random.h"
+#include "host/base/random.h"
 
 namespace mica::host::normal_map_brdf_test {
 namespace {
@@ -22,7 +22,7 @@ Eigen::Vector3d direction(double z, double azimuth) {
   return {radius * std::cos(azimuth), radius * std::sin(azimuth), z};
 }
 
-const Footprint footprint{{0.3, 0.6}, Eigen::Matrix2d::Identity() * 1e-4};
+const Footprint kFootprint{{0.3, 0.6}, Eigen::Matrix2d::Identity() * 1e-4};
 
 TEST(NormalMapBrdf, IsASmoothLobeAboutTheMapsNormal) {
   const double r = 0.1, angle = 0.3;
@@ -35,8 +35,8 @@ TEST(NormalMapBrdf, IsASmoothLobeAboutTheMapsNormal) {
     const double slope2 = half.head<2>().squaredNorm() / (half.z() * half.z());
     const double D = std::exp(-slope2 / (2 * r * r)) / (2 * kPi * r * r) / std::pow(half.z(), 4);
     const double expected = D / (4 * view.z());
-    EXPECT_NEAR(flat.evaluate({{footprint, view, light, r}})[0].single, expected, 1e-5 * expected);
-    EXPECT_NEAR(turned.evaluate({{footprint, turn * view, turn * light, r}})[0].single, expected,
+    EXPECT_NEAR(flat.evaluate({{kFootprint, view, light, r}})[0].single, expected, 1e-5 * expected);
+    EXPECT_NEAR(turned.evaluate({{kFootprint, turn * view, turn * light, r}})[0].single, expected,
                 1e-5 * expected);
   }
 }
@@ -44,11 +44,11 @@ TEST(NormalMapBrdf, IsASmoothLobeAboutTheMapsNormal) {
 TEST(NormalMapBrdf, NothingFromBelowEitherHorizon) {
   NormalMapBrdf brdf(tilted(0.5));
   const Eigen::Vector3d up = Eigen::Vector3d::UnitZ(), low_behind = direction(0.2, kPi);
-  EXPECT_EQ(brdf.evaluate({{footprint, up, low_behind, 0.3}})[0].single, 0);
-  EXPECT_EQ(brdf.evaluate({{footprint, low_behind, up, 0.3}})[0].single, 0);
-  EXPECT_EQ(brdf.evaluate({{footprint, up, direction(-0.1, 0), 0.3}})[0].single, 0);
-  EXPECT_EQ(brdf.sample({{{footprint, low_behind, 0.3}, 1}})[0].pdf, 0);
-  EXPECT_GT(brdf.evaluate({{footprint, up, direction(0.2, 0), 0.3}})[0].single, 0);
+  EXPECT_EQ(brdf.evaluate({{kFootprint, up, low_behind, 0.3}})[0].single, 0);
+  EXPECT_EQ(brdf.evaluate({{kFootprint, low_behind, up, 0.3}})[0].single, 0);
+  EXPECT_EQ(brdf.evaluate({{kFootprint, up, direction(-0.1, 0), 0.3}})[0].single, 0);
+  EXPECT_EQ(brdf.sample({{{kFootprint, low_behind, 0.3}, 1}})[0].pdf, 0);
+  EXPECT_GT(brdf.evaluate({{kFootprint, up, direction(0.2, 0), 0.3}})[0].single, 0);
 }
 
 /// What tilting takes: draws against a quadrature of `evaluate` over the hemisphere.
@@ -61,7 +61,7 @@ TEST(NormalMapBrdf, DrawsFindTheSameAlbedoAsAQuadrature) {
     for (int j = 0; j < rings; ++j)
       for (int k = 0; k < sectors; ++k)
         questions.push_back(
-            {footprint, view, direction((j + 0.5) / rings, 2 * kPi * (k + 0.5) / sectors), 0.25});
+            {kFootprint, view, direction((j + 0.5) / rings, 2 * kPi * (k + 0.5) / sectors), 0.25});
     double quadrature = 0, densities = 0;
     for (const BrdfValue& value : brdf.evaluate(questions))
       quadrature += static_cast<double>(value.single), densities += static_cast<double>(value.pdf);
@@ -69,7 +69,7 @@ TEST(NormalMapBrdf, DrawsFindTheSameAlbedoAsAQuadrature) {
 
     std::vector<SampleQuery> keys;
     for (int n = 0; n < draws; ++n)
-      keys.push_back({{footprint, view, 0.25}, synthesis::random_bits(5, 0, static_cast<std::uint64_t>(n))});
+      keys.push_back({{kFootprint, view, 0.25}, random_bits(5, 0, static_cast<std::uint64_t>(n))});
     double sum = 0, squares = 0, kept = 0;
     for (const BrdfSample& sample : brdf.sample(keys)) {
       const double weight = static_cast<double>(sample.weight_single);
@@ -77,7 +77,7 @@ TEST(NormalMapBrdf, DrawsFindTheSameAlbedoAsAQuadrature) {
     }
     const double mean = sum / draws, error = std::sqrt((squares / draws - mean * mean) / draws);
     EXPECT_NEAR(mean, quadrature, 4.5 * error + 1e-4) << angle;
-    EXPECT_NEAR(brdf.energy({{footprint, view, 0.25}})[0].single, quadrature, 5e-3) << angle;
+    EXPECT_NEAR(brdf.energy({{kFootprint, view, 0.25}})[0].single, quadrature, 5e-3) << angle;
     EXPECT_NEAR(kept / draws, densities, 4.5 * 0.5 / std::sqrt(draws)) << angle;
     EXPECT_LT(error, 3e-3) << "too noisy to tell";
   }

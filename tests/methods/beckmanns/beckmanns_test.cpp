@@ -7,10 +7,11 @@
 #include <cstdio>
 #include <numeric>
 
+#include "host/base/error_norms.h"
+#include "host/base/random.h"
 #include "host/methods/beckmanns/beckmann_evaluator.h"
 #include "host/reference/beckmann_mixture.h"
-#include "host/surface/random.h"
-#include "host/verify/accuracy.h"
+#include "host/surface/texel_footprint.h"
 #include "mica/error.h"
 #include "tests/methods/bilinear_samples.h"
 #include "tests/methods/gaussians/mixture_culling.h"
@@ -139,7 +140,7 @@ TEST(Beckmanns, KeepFlakesApart) {
   BeckmannEvaluator evaluator = beckmanns(surface, 1);
   const Footprint footprint = make_footprint(surface, {0.5, 0.5}, 2, 2, 0);
   const auto density = [&](double s) { return evaluator.evaluate({Query{footprint, {s, 0.0}, 0.02}})[0]; };
-  // Of a Gaussian of slopes: 1 / (2 pi sigma^2 det(d slope / d normal) cos^4), and det is cos^-4.
+  // The peak of a Gaussian of slopes: 1 / (2 pi sigma^2 det(d slope / d normal) cos^4), and det is cos^-4.
   const double half_peak = 0.5 / (2 * M_PI * 0.02 * 0.02);
   EXPECT_NEAR(density(-0.2) / half_peak, 1, 1e-3);
   EXPECT_NEAR(density(0.2) / half_peak, 1, 1e-3);

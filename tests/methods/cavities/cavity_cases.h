@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "host/base/query.h"
+#include "host/base/random.h"
 #include "host/surface/disk.h"
-#include "host/surface/random.h"
 #include "host/surface/surface.h"
 
 namespace mica::host::cavity_cases {
@@ -55,7 +55,7 @@ inline std::vector<Case> figure_11(int resolution = 256) {
       {"rough", rough(resolution)}, {"scratched", scratched(resolution)}, {"brushed", brushed(resolution)}};
 }
 
-/// Of standard deviations in texels along the axes of the map.
+/// A footprint by its standard deviations in texels along the axes of the map.
 inline Footprint footprint(const Surface& surface, const Eigen::Vector2d& mean_uv, double sigma_u,
                            double sigma_v) {
   const Eigen::Vector2d sigma_uv(sigma_u / surface.width(), sigma_v / surface.height());
@@ -68,7 +68,7 @@ inline Eigen::Vector3d direction(double polar_degrees, double azimuth_degrees) {
 }
 
 inline double uniform(std::uint64_t stream, std::uint64_t index) {
-  return synthesis::random_unit(11, stream, index);
+  return random_unit(11, stream, index);
 }
 
 /// The n-th of a row of views: all polar angles up to 89.99 degrees.

@@ -195,8 +195,8 @@ TEST(CavityDraws, FallAsTheirDensity) {
       const statistics::ChiSquare test = statistics::chi_square_of_directions(
           kBins, lights, draws, integrals(&brdf, view, [](const BrdfValue& value) { return value.pdf; }));
       EXPECT_GE(test.p_value, statistics::sidak(0.01, 8))
-          << scene.name << ", " << compensation_names()[static_cast<int>(kind)] << ", seeds " << per_texel
-          << ": chi-square " << test.statistic << " of " << test.degrees_of_freedom;
+          << scene.name << ", " << word_of(kind) << ", seeds " << per_texel << ": chi-square "
+          << test.statistic << " of " << test.degrees_of_freedom;
     }
   }
 }

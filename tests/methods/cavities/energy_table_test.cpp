@@ -17,7 +17,7 @@ double energy_of_slopes(double x, double y, double cosine) {
   for (const double side : {1.0, -1.0}) {
     const double area = std::max(cosine + side * x * sine, 0.0);  // o.m / m_z
     if (area == 0) continue;
-    const double height = 2 * area * squared - cosine;  // of the image r
+    const double height = 2 * area * squared - cosine;  // height of the image r
     const double other = std::max(2 * height - area, 0.0);
     if (height > 0) energy += area / areas * std::min(1.0, 2 * height / (area + other));
   }

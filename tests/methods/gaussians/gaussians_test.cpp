@@ -8,9 +8,10 @@
 #include <numeric>
 
 #include "host/base/constants.h"
+#include "host/base/error_norms.h"
 #include "host/methods/gaussians/mixture_evaluator.h"
 #include "host/reference/gaussian_mixture.h"
-#include "host/verify/accuracy.h"
+#include "host/surface/texel_footprint.h"
 #include "mica/error.h"
 #include "tests/methods/bilinear_samples.h"
 #include "tests/methods/gaussians/mixture_culling.h"

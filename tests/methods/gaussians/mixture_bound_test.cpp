@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "host/surface/random.h"
+#include "host/base/random.h"
 #include "kernels/types.h"
 
 namespace mica::host::mixture_bound_test {
@@ -36,7 +36,7 @@ Bound bound_of(const std::vector<ElementMoments>& elements) {
 }
 
 double random(std::uint64_t set, std::uint64_t n) {
-  return synthesis::random_unit(3, set, n);
+  return random_unit(3, set, n);
 }
 
 TEST(MixtureBound, HoldsForEveryElement) {

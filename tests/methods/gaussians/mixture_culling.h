@@ -8,12 +8,13 @@
 #include <vector>
 
 #include "host/methods/gaussians/mixture_evaluator.h"
+#include "host/surface/texel_footprint.h"
 #include "tests/methods/bilinear_samples.h"
 
 namespace mica::host {
 
-/// Of the integral, culling at a weight of e drops at most e (1 - ln e): position and normal are four
-/// Gaussian numbers. It adds nothing.
+/// Culling at a weight of e drops at most a share of e (1 - ln e) of the integral: position and normal are
+/// four Gaussian numbers. It adds nothing.
 /// @param evaluator culls by default; @param fine next to nothing.
 inline void expect_culling_drops_little(const Surface& surface, Evaluator* evaluator, Evaluator* fine) {
   const double error = MixtureSettings().cutoff_error;

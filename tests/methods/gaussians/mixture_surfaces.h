@@ -5,8 +5,9 @@
 #include <cmath>
 #include <vector>
 
-#include "host/surface/random.h"
+#include "host/base/random.h"
 #include "host/surface/surface.h"
+#include "host/surface/texel_footprint.h"
 #include "host/verify/accuracy.h"
 
 namespace mica::host {
@@ -40,7 +41,7 @@ inline std::vector<std::vector<Query>> mixture_probes(const Surface& surface, do
   constexpr int footprints = 12;
   std::vector<std::vector<Query>> all;
   for (int n = 0; n < footprints; ++n) {
-    const auto random = [&](std::uint64_t stream) { return synthesis::random_unit(21, stream, n); };
+    const auto random = [&](std::uint64_t stream) { return random_unit(21, stream, n); };
     const double major = 0.25 * std::pow(largest / 0.25, n / (footprints - 1.0));
     const double minor = std::max(major * std::pow(30, -random(0)), 0.05);
     const Footprint footprint =

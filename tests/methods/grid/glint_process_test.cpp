@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "host/base/constants.h"
+#include "host/base/random.h"
 #include "host/methods/grid/grid_evaluator.h"
 #include "host/reference/glint_grid.h"
-#include "host/surface/random.h"
 
 namespace mica::host::glint_process_test {
 namespace {
@@ -18,7 +18,7 @@ struct Sample {
 };
 Sample sample_of(Distribution distribution, std::size_t count, std::uint64_t seed) {
   std::uint64_t counter = 0;
-  const auto random = [&] { return synthesis::random_unit(seed, 0, counter++); };
+  const auto random = [&] { return random_unit(seed, 0, counter++); };
   Sample sample{std::vector<Query>(count), std::vector<GlintPoint>(count)};
   for (std::size_t n = 0; n < count; ++n) {
     GlintPoint& point = sample.points[n];

@@ -7,9 +7,9 @@
 #include <cmath>
 
 #include "host/base/constants.h"
+#include "host/base/random.h"
 #include "host/methods/grid/grid_brdf.h"
 #include "host/reference/glint_draws.h"
-#include "host/surface/random.h"
 
 namespace mica::host::grid_brdf_test {
 namespace {
@@ -17,7 +17,7 @@ namespace {
 class Random {
  public:
   explicit Random(std::uint64_t seed) : seed_(seed) {}
-  double operator()() { return synthesis::random_unit(seed_, 0, counter_++); }
+  double operator()() { return random_unit(seed_, 0, counter_++); }
   Eigen::Vector2d in_disk(double radius) {
     const double r = radius * std::sqrt((*this)()), turn = 2 * kPi * (*this)();
     return Eigen::Vector2d(0.5 + 0.5 * r * std::cos(turn), 0.5 + 0.5 * r * std::sin(turn));
@@ -115,7 +115,7 @@ TEST_P(GridBrdfTest, DrawsFollowTheirDensity) {
       const Eigen::Vector2d point = process.to_disk(half.head<2>());
       ++observed[bin_of(point.x()) * bins + bin_of(point.y())];
     }
-    // Of a fine grid of points on the disk: their density over it, where their light is above the horizon.
+    // At fine points all over the disk: their density over it, where their light is above the horizon.
     std::vector<BrdfQuery> at;
     std::vector<std::pair<int, double>> places;
     const double step = 1.0 / (bins * inside);
@@ -126,7 +126,8 @@ TEST_P(GridBrdfTest, DrawsFollowTheirDensity) {
         const Eigen::Vector2d on_disk = process.from_disk(point);
         const Eigen::Vector3d half = unit(on_disk), light = mirrored(query.from.view, half);
         if (light.z() < 1e-6 || query.from.view.dot(half) <= 0) continue;
-        const double jacobian = kPi / 4 * process.smooth_density(on_disk);  // of the disk over (s, t), Eq. 3
+        const double jacobian =
+            kPi / 4 * process.smooth_density(on_disk);  // how areas change from (s, t) to the disk, Eq. 3
         at.push_back({query.from.footprint, query.from.view, light, query.from.roughness});
         places.emplace_back(bin_of(point.x()) * bins + bin_of(point.y()),
                             step * step / jacobian * 4 * query.from.view.dot(half) / half.z());
@@ -249,7 +250,7 @@ TEST_P(GridBrdfTest, DrawsHaveLessNoiseThanThoseOfTheSmoothDistribution) {
     ours += squares / count - std::pow(sum / count, 2);
 
     std::vector<BrdfQuery> lit;
-    std::vector<double> densities;  // of the smooth draws, over directions of light
+    std::vector<double> densities;  // densities of the smooth draws, over directions of light
     for (int n = 0; n < count; ++n) {
       const Eigen::Vector3d half = unit(process.from_disk(random.in_disk(1)));
       lit.push_back(
@@ -311,7 +312,7 @@ TEST_P(GridBrdfTest, StaysFiniteOnHardCases) {
             draw.from.footprint.cov_uv << sigma * sigma, 0, 0, sigma * sigma * aspect * aspect;
             draw.from.view = Eigen::Vector3d(std::sqrt(1 - cosine * cosine), 0, cosine);
             draw.from.roughness = micro;
-            draw.key = synthesis::random_bits(1, draws.size(), key);
+            draw.key = random_bits(1, draws.size(), key);
             draws.push_back(draw);
           }
         }
@@ -334,7 +335,7 @@ TEST_P(GridBrdfTest, StaysFiniteOnHardCases) {
       }
     }
   }
-  EXPECT_GT(drawn, draws.size());  // of eight times as many
+  EXPECT_GT(drawn, draws.size());  // eight times as many were asked for
 }
 
 std::string name_of(const testing::TestParamInfo<Distribution>& info) {

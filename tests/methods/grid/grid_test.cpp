@@ -9,9 +9,10 @@
 #include <cmath>
 
 #include "host/base/constants.h"
+#include "host/base/random.h"
+#include "host/device/launch.h"
 #include "host/methods/grid/grid_evaluator.h"
 #include "host/reference/glint_grid.h"
-#include "host/surface/random.h"
 #include "mica/error.h"
 
 namespace mica::host::grid_test {
@@ -25,7 +26,7 @@ reference::GlintProcess process_of(const GlintGrid& grid) {
 class Uniform {
  public:
   explicit Uniform(std::uint64_t seed) : seed_(seed) {}
-  double operator()() { return synthesis::random_unit(seed_, 0, counter_++); }
+  double operator()() { return random_unit(seed_, 0, counter_++); }
   double logarithmic(double low, double high) { return low * std::pow(high / low, (*this)()); }
 
  private:
@@ -95,13 +96,8 @@ std::vector<float> map_points(Device* device, const std::string& kernel_name, co
   std::vector<float> result(rows_out * pitch);
   const cl::Buffer in = device->upload(points, "points");
   const cl::Buffer out = device->buffer(result.size() * sizeof(float), CL_MEM_WRITE_ONLY, "results");
-  kernel.setArg(0, in);
-  kernel.setArg(1, static_cast<cl_int>(pitch));
-  kernel.setArg(2, static_cast<float>(grid.alpha_x));
-  kernel.setArg(3, static_cast<float>(grid.alpha_y));
-  kernel.setArg(4, out);
-  const std::size_t items = device->wave_form() == WaveForm::items ? pitch : pitch / 16;
-  device->queue().enqueueNDRangeKernel(kernel, cl::NullRange, items, 16);
+  launch(*device, kernel, launch_size(device->wave_form(), pitch / kWaveLanes), in,
+         static_cast<cl_int>(pitch), static_cast<float>(grid.alpha_x), static_cast<float>(grid.alpha_y), out);
   device->queue().enqueueReadBuffer(out, CL_TRUE, 0, result.size() * sizeof(float), result.data());
   return result;
 }

@@ -102,7 +102,7 @@ TEST(MomentPyramid, KeepsAreaMeanAndCovarianceOfTheNormals) {
   const Surface surface = noise(150, 90);
   const Total expected = total_of(surface);
   for (const bool compact : {false, true}) {
-    const double slack = compact ? 50 : 1, reach = 0.3;  // of the normals
+    const double slack = compact ? 50 : 1, reach = 0.3;  // reach of the normals
     const double mean_slack = 1e-5 + (compact ? reach / (2 * MICA_RECORD_ONE_8) : 0);
     for (const double cell : {0.01, 0.05, 0.3}) {
       for (const int finest : {16, 24}) {

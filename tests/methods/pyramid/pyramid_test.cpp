@@ -6,10 +6,11 @@
 #include <numeric>
 
 #include "host/base/constants.h"
+#include "host/base/error_norms.h"
+#include "host/base/random.h"
 #include "host/methods/pyramid/pyramid_evaluator.h"
 #include "host/reference/oracle.h"
-#include "host/surface/random.h"
-#include "host/verify/accuracy.h"
+#include "host/surface/texel_footprint.h"
 #include "tests/methods/bilinear_samples.h"
 
 namespace mica::host::pyramid_test {
@@ -46,7 +47,7 @@ std::vector<Query> random_queries(const Surface& surface, double major_texels, d
                                   double roughness, int count) {
   std::vector<Query> queries(count);
   for (int n = 0; n < count; ++n) {
-    const auto random = [&](std::uint64_t stream) { return synthesis::random_unit(7, stream, n); };
+    const auto random = [&](std::uint64_t stream) { return random_unit(7, stream, n); };
     const Eigen::Vector2d mean_uv(4 * random(0) - 2, 4 * random(1) - 2);
     queries[n].footprint = make_footprint(surface, mean_uv, major_texels, minor_texels, kPi * random(2));
     const long i = std::lround(mean_uv.x() * surface.width() + minor_texels * (2 * random(3) - 1));
@@ -153,7 +154,7 @@ TEST(Pyramid, KeepsOnePercentOfLongFootprints) {
   }
 }
 
-/// Of elements far wider than the roughness, whose normals follow from where they lie.
+/// Elements are far wider than the roughness here, and their normals follow from where they lie.
 TEST(Pyramid, DropsOnlyWhatIsBelowTheCutoff) {
   const Surface surface = oblong();
   const std::vector<Query> queries = random_queries(surface, 24, 24, 0.005, 400);

@@ -7,6 +7,7 @@
 
 #include "host/methods/smooth/smooth_evaluator.h"
 #include "host/reference/beckmann_mixture.h"
+#include "host/surface/texel_footprint.h"
 #include "tests/methods/gaussians/mixture_surfaces.h"
 
 namespace mica::host::smooth_test {

@@ -9,8 +9,9 @@
 #include <numeric>
 
 #include "host/base/constants.h"
+#include "host/base/random.h"
 #include "host/methods/triangles/triangle_evaluator.h"
-#include "host/surface/random.h"
+#include "host/surface/texel_footprint.h"
 #include "host/verify/accuracy.h"
 
 namespace mica::host::triangles_test {
@@ -75,7 +76,7 @@ Device& device() {
 struct SurfaceClass {
   std::string name;
   std::function<Surface()> make;
-  double largest_area;  ///< of footprints, texels^2: the oracle visits them all
+  double largest_area;  ///< largest area of footprints, texels^2: the oracle visits them all
 };
 
 void PrintTo(const SurfaceClass& surface_class, std::ostream* stream) {
@@ -91,7 +92,7 @@ std::vector<std::vector<Query>> probes_of(const Surface& surface, double roughne
   constexpr double smallest = 0.1, largest = 256, thinnest = 2e-3;  // texels
   std::vector<std::vector<Query>> probes;
   for (int n = 0; n < footprints; ++n) {
-    const auto random = [&](std::uint64_t stream) { return synthesis::random_unit(seed, stream, n); };
+    const auto random = [&](std::uint64_t stream) { return random_unit(seed, stream, n); };
     const double major = smallest * std::pow(largest / smallest, n / (footprints - 1.0));
     const double most_aspect = std::min(100.0, major / thinnest);
     const double least_aspect = std::clamp(major * major / largest_area, 1.0, most_aspect);
@@ -201,7 +202,7 @@ TEST(Triangles, IntegratesToOne) {
 std::vector<Query> mixed_queries(const Surface& surface, int footprints) {
   std::vector<Query> queries;
   for (int n = 0; n < footprints; ++n) {
-    const auto random = [&](std::uint64_t stream) { return synthesis::random_unit(11, stream, n); };
+    const auto random = [&](std::uint64_t stream) { return random_unit(11, stream, n); };
     const double major = 0.2 * std::pow(100, random(0));
     const Footprint footprint =
         make_footprint(surface, {random(1), random(2)}, major, major * std::pow(0.1, random(3)), random(4));
@@ -263,9 +264,8 @@ TEST(Triangles, DependOnTheQueryAlone) {
   }
   std::vector<std::size_t> order(queries.size());
   std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [](std::size_t a, std::size_t b) {
-    return synthesis::random_bits(1, 0, a) < synthesis::random_bits(1, 0, b);
-  });
+  std::sort(order.begin(), order.end(),
+            [](std::size_t a, std::size_t b) { return random_bits(1, 0, a) < random_bits(1, 0, b); });
   std::vector<Query> shuffled(queries.size());
   for (std::size_t n = 0; n < order.size(); ++n) shuffled[n] = queries[order[n]];
   const std::vector<float> shuffled_densities = evaluator.evaluate(shuffled);

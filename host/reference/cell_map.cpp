@@ -1,4 +1,4 @@
-#include "host/reference/cell_grid.h"
+#include "host/reference/cell_map.h"
 
 #include <algorithm>
 
@@ -6,14 +6,14 @@
 
 namespace mica::host::reference {
 
-CellGrid::CellGrid(const Surface& surface)
+CellMap::CellMap(const Surface& surface)
     : surface_(surface),
       cells_a_texel_(surface.interpolation() == Interpolation::bicubic ? 4 : 1),
       columns_(surface.width() * cells_a_texel_),
       rows_(surface.height() * cells_a_texel_),
       origin_(surface.interpolation() == Interpolation::nearest ? 0.0 : 0.5) {}
 
-CellGrid::Block CellGrid::block(int block_i, int block_j) const {
+CellMap::Block CellMap::block(int block_i, int block_j) const {
   const int first_i = block_i * block_cells, first_j = block_j * block_cells;
   Block block;
   block.columns = std::min(block_cells, columns_ - first_i);
@@ -27,7 +27,7 @@ CellGrid::Block CellGrid::block(int block_i, int block_j) const {
   return block;
 }
 
-void CellGrid::fill_from_texels(int first_i, int first_j, Block* block) const {
+void CellMap::fill_from_texels(int first_i, int first_j, Block* block) const {
   const bool extra = block->shared_corners_;
   for (int j = 0; j < block->rows + (extra ? 1 : 0); ++j) {
     const Eigen::Vector2d* row = &surface_.texel(0, first_j + j);
@@ -37,7 +37,7 @@ void CellGrid::fill_from_texels(int first_i, int first_j, Block* block) const {
   }
 }
 
-void CellGrid::fill_bicubic(int first_i, int first_j, Block* block) const {
+void CellMap::fill_bicubic(int first_i, int first_j, Block* block) const {
   constexpr int texel_span =
       block_cells / 4 + 3;  // from one before the first quad to two after the last one's start
   std::array<Eigen::Vector4d, 4> weights;
@@ -64,7 +64,7 @@ void CellGrid::fill_bicubic(int first_i, int first_j, Block* block) const {
   }
 }
 
-NormalBox CellGrid::block_bounds(int block_i, int block_j) const {
+NormalBox CellMap::block_bounds(int block_i, int block_j) const {
   // Triangles stay within their corners, and texel squares within their texels. Actual corners are bounded,
   // bicubic ones too, so overshoot needs no allowance.
   const Block all = block(block_i, block_j);

@@ -22,10 +22,10 @@ struct NormalBox {
   }
 };
 
-/// The triangulated surface of [Yan14] sec. 5 as a periodic grid of square cells, each two triangles: a quad
+/// The triangulated surface of [Yan14] sec. 5 as a periodic array of square cells, each two triangles: a quad
 /// of texel centres (`bilinear`), a 4x4th of one (`bicubic`), or a texel with the same normal at its four
 /// corners (`nearest`). Cells are handed out in blocks. Keeps a reference to the surface.
-class CellGrid {
+class CellMap {
  public:
   static constexpr int block_cells =
       8;  ///< cells a side of a block; the last ones of a row or column may be cut
@@ -40,13 +40,13 @@ class CellGrid {
     }
 
    private:
-    friend class CellGrid;
+    friend class CellMap;
     static constexpr int pitch = block_cells + 1;
     bool shared_corners_ = true;
     std::array<Eigen::Vector2d, pitch * pitch> normals_;
   };
 
-  explicit CellGrid(const Surface& surface);
+  explicit CellMap(const Surface& surface);
 
   int columns() const { return columns_; }  ///< cells in a period
   int rows() const { return rows_; }
