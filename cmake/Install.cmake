@@ -60,4 +60,4 @@ install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime FIL
 if(NOT MICA_DEBIAN)  # whose policy has a file `copyright` in its place
   install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime)
 endif()
-mica_install_library(mica_library development)
+mica_install_library(mica_public development)

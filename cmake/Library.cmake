@@ -1,7 +1,7 @@
 # libmica, as others link it. All that is not MICA_API of include/mica is hidden in the objects already.
 
-# mica_make_library(TARGET [STATIC|SHARED]): without a type, BUILD_SHARED_LIBS chooses.
-function(mica_make_library target)
+# mica_library(TARGET [STATIC|SHARED]): without a type, BUILD_SHARED_LIBS chooses.
+function(mica_library target)
   add_library(${target} ${ARGN})
   mica_collect(${target})
   target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
@@ -23,5 +23,5 @@ function(mica_make_library target)
   endif()
 endfunction()
 
-mica_make_library(mica_library)
-add_library(mica::mica ALIAS mica_library)
+mica_library(mica_public)
+add_library(mica::mica ALIAS mica_public)

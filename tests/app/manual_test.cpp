@@ -6,7 +6,7 @@
 
 #include "tests/app/command.h"
 
-namespace mica::host::app {
+namespace mica::host::app::manual_test {
 namespace {
 
 /// What a command's help offers: names of options, and of the commands below it.
@@ -165,4 +165,4 @@ TEST_F(Manual, VersionNeedsNoPlatform) {
 }
 
 }  // namespace
-}  // namespace mica::host::app
+}  // namespace mica::host::app::manual_test
