@@ -11,15 +11,17 @@ find_package(nlohmann_json REQUIRED)
 find_package(OpenCL REQUIRED)
 find_package(Boost REQUIRED)
 find_package(PkgConfig REQUIRED)
-pkg_check_modules(xxhash REQUIRED IMPORTED_TARGET libxxhash)
+pkg_check_modules(mica_xxhash REQUIRED IMPORTED_TARGET libxxhash)
 # Debian's CMake package of OpenImageIO insists on the command line tools; pkg-config does not.
-pkg_check_modules(OpenImageIO REQUIRED IMPORTED_TARGET OpenImageIO)
+pkg_check_modules(mica_OpenImageIO REQUIRED IMPORTED_TARGET OpenImageIO)
 
+# What programs that use libmica.a are linked with: packaging/mica-config.cmake.in finds the same ones again.
+set(MICA_LINKED_LIBRARIES Threads::Threads fmt::fmt spdlog::spdlog TBB::tbb embree OpenCL::OpenCL
+                          tomlplusplus::tomlplusplus PkgConfig::mica_xxhash PkgConfig::mica_OpenImageIO)
 add_library(mica_libraries INTERFACE)
 target_link_libraries(
-  mica_libraries INTERFACE Threads::Threads Eigen3::Eigen fmt::fmt spdlog::spdlog TBB::tbb embree
-                           tomlplusplus::tomlplusplus CLI11::CLI11 nlohmann_json::nlohmann_json OpenCL::OpenCL
-                           Boost::headers PkgConfig::xxhash PkgConfig::OpenImageIO)
+  mica_libraries INTERFACE ${MICA_LINKED_LIBRARIES} Eigen3::Eigen CLI11::CLI11 nlohmann_json::nlohmann_json
+                           Boost::headers)
 
 # Warnings and sanitizers, for every target of this project.
 add_library(mica_options INTERFACE)
@@ -29,7 +31,7 @@ if(MICA_DEVELOPER)
 endif()
 target_include_directories(mica_options INTERFACE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/include
                                                   ${PROJECT_SOURCE_DIR}/kernels)
-target_compile_definitions(mica_options INTERFACE MICA_VERSION="${PROJECT_VERSION}")
+target_compile_definitions(mica_options INTERFACE MICA_SHARED MICA_VERSION="${PROJECT_VERSION}")
 if(MICA_SANITIZE)
   target_compile_options(mica_options INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=all
                                                 -fno-omit-frame-pointer)

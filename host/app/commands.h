@@ -21,5 +21,6 @@ void add_map(CLI::App& app, Command* chosen, const MethodRegistry& methods);
 void add_devices(CLI::App& app, Command* chosen, const MethodRegistry& methods);
 void add_selftest(CLI::App& app, Command* chosen, const MethodRegistry& methods);
 void add_bench(CLI::App& app, Command* chosen, const MethodRegistry& methods);
+void add_manual(CLI::App& app, Command* chosen, const MethodRegistry& methods);
 
 }  // namespace mica::host::app

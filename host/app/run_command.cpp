@@ -4,12 +4,12 @@
 #include <cstdio>
 #include <exception>
 
+#include "host/app/about.h"
 #include "host/app/commands.h"
 #include "host/app/exit_code.h"
 #include "host/base/interrupt.h"
 #include "mica/error.h"
 #include "mica/method.h"
-#include "mica/version.h"
 
 namespace mica::host::app {
 namespace {
@@ -20,11 +20,11 @@ int code(ExitCode exit_code) {
 
 int parse_and_run(int argc, const char* const* argv, const MethodRegistry& methods) {
   CLI::App app("Mica evaluates glint normal distribution functions on OpenCL and makes pictures of them.");
-  app.set_version_flag("--version", version());
+  app.set_version_flag("--version", about);
   app.require_subcommand(1);
   Command chosen;
   for (const auto add :
-       {add_render, add_check, add_ndf, add_eval, add_map, add_devices, add_selftest, add_bench})
+       {add_render, add_check, add_ndf, add_eval, add_map, add_devices, add_selftest, add_bench, add_manual})
     add(app, &chosen, methods);
   try {
     app.parse(argc, argv);

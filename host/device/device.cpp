@@ -9,15 +9,19 @@
 namespace mica::host {
 namespace {
 
-std::vector<cl::Device> all_devices() {
-  std::vector<cl::Device> devices;
+std::vector<cl::Platform> all_platforms() {
   std::vector<cl::Platform> platforms;
   try {
     cl::Platform::get(&platforms);
   } catch (const cl::Error& error) {
     if (error.err() != CL_PLATFORM_NOT_FOUND_KHR) throw opencl_error(error, "listing OpenCL platforms");
   }
-  for (const cl::Platform& platform : platforms) {
+  return platforms;
+}
+
+std::vector<cl::Device> all_devices() {
+  std::vector<cl::Device> devices;
+  for (const cl::Platform& platform : all_platforms()) {
     std::vector<cl::Device> found;
     try {
       platform.getDevices(CL_DEVICE_TYPE_ALL, &found);
@@ -56,6 +60,13 @@ cl::Device choose(int index) {
 }
 
 }  // namespace
+
+std::vector<PlatformInfo> list_platforms() {
+  std::vector<PlatformInfo> infos;
+  for (const cl::Platform& platform : all_platforms())
+    infos.push_back({platform.getInfo<CL_PLATFORM_NAME>(), platform.getInfo<CL_PLATFORM_VERSION>()});
+  return infos;
+}
 
 std::vector<DeviceInfo> list_devices() {
   std::vector<DeviceInfo> infos;

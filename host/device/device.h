@@ -23,6 +23,13 @@ struct DeviceInfo {
   std::size_t work_group_size = 0;   ///< largest work-group
 };
 
+struct PlatformInfo {
+  std::string name, version;
+};
+
+/// Every OpenCL platform, in the loader's order; none is no error.
+std::vector<PlatformInfo> list_platforms();
+
 /// Every OpenCL device of every platform, in the loader's order; `mica devices` prints their numbers.
 std::vector<DeviceInfo> list_devices();
 
