@@ -37,23 +37,23 @@ int run(const BenchOptions& options, const MethodRegistry& methods) {
 
 }  // namespace
 
-void add_bench(CLI::App& app, Command* chosen, const MethodRegistry& methods) {
+void add_bench(CommandLine& app, Command* chosen, const MethodRegistry& methods) {
   auto options = std::make_shared<BenchOptions>();
-  CLI::App* command =
+  CommandLine* command =
       app.add_subcommand("bench", "Measures every evaluator's speed and error, side by side in one run");
   command->footer(
       "quick takes less than a minute, standard less than ten, on two idle cores. Compare ratios within a "
       "run,\n"
       "not speeds of two runs. docs/benchmark.md says what is measured and how.");
   command->add_option("suite", options->suite, "tiny, quick or standard")
-      ->check(CLI::IsMember(bench::suite_names()))
-      ->capture_default_str();
-  command->add_option("--json", options->json, "Writes every number as JSON")->type_name("FILE");
+      .check(one_of(bench::suite_names()))
+      .show_default();
+  command->add_option("--json", options->json, "Writes every number as JSON").type_name("FILE");
   command->add_option("--html", options->html, "Writes a page with plots and pictures; it needs no network")
-      ->type_name("FILE");
+      .type_name("FILE");
   command->add_option("--device", options->device, "OpenCL device, by its number in `mica devices`")
-      ->type_name("N")
-      ->capture_default_str();
+      .type_name("N")
+      .show_default();
   command->add_flag("--quiet", options->quiet, "No progress");
   command->callback([=, &methods] { *chosen = [=, &methods] { return run(*options, methods); }; });
 }

@@ -45,10 +45,10 @@ int run(const CheckOptions& options, const MethodRegistry& methods) {
 
 }  // namespace
 
-void add_check(CLI::App& app, Command* chosen, const MethodRegistry& methods) {
+void add_check(CommandLine& app, Command* chosen, const MethodRegistry& methods) {
   auto options = std::make_shared<CheckOptions>();
-  CLI::App* command = app.add_subcommand("check", "Validate a job and print its plan; render nothing");
-  command->add_option("job", options->job, "Job file, TOML")->required();
+  CommandLine* command = app.add_subcommand("check", "Validate a job and print its plan; render nothing");
+  command->add_option("job", options->job, "Job file, TOML").required();
   command->add_option("--set", options->overrides, "Override a setting: key.path=value, as often as needed");
   command->add_option("--device", options->device, "Number of the OpenCL device that the estimate is for");
   command->add_option("--json", options->json, "Write the plan and the estimate as JSON");

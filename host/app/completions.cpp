@@ -9,12 +9,18 @@ namespace {
 using Words = std::vector<std::string>;
 
 std::string spaced(const Words& words) {
-  return CLI::detail::join(words, " ");
+  return fmt::format("{}", fmt::join(words, " "));
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
+    text.replace(at, from.size(), to);
+  return text;
 }
 
 /// In single quotes, for any of the three shells: each reads `'\''` as a quote.
 std::string quoted(const std::string& text) {
-  return "'" + CLI::detail::find_and_replace(text, "'", "'\\''") + "'";
+  return "'" + replaced(text, "'", "'\\''") + "'";
 }
 
 Words option_names(const CommandWords& command) {
@@ -62,7 +68,7 @@ std::string bash_values(const CommandWords& command) {
 /// A description inside a zsh specification, where brackets and colons have a meaning.
 std::string zsh_text(std::string text) {
   for (const char* const special : {"\\", "[", "]", ":"})
-    text = CLI::detail::find_and_replace(text, special, std::string("\\") + special);
+    text = replaced(text, special, std::string("\\") + special);
   return text;
 }
 

@@ -30,13 +30,13 @@ int run(const std::string& json_path) {
 
 }  // namespace
 
-void add_devices(CLI::App& app, Command* chosen, const MethodRegistry&) {
+void add_devices(CommandLine& app, Command* chosen, const MethodRegistry&) {
   auto json_path = std::make_shared<std::string>();
-  CLI::App* command =
+  CommandLine* command =
       app.add_subcommand("devices", "Lists the OpenCL devices, by the numbers that --device takes");
   command->footer(
       "\"waves as\" is how kernels use a device: as vectors (CPUs) or as neighbouring work-items (GPUs).");
-  command->add_option("--json", *json_path, "Writes the list as JSON")->type_name("FILE");
+  command->add_option("--json", *json_path, "Writes the list as JSON").type_name("FILE");
   command->callback([json_path, chosen] { *chosen = [json_path] { return run(*json_path); }; });
 }
 

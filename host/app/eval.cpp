@@ -107,24 +107,24 @@ int run(const EvalOptions& options) {
   return 0;
 }
 
-void add_patch_options(CLI::App* command, EvalOptions* options) {
+void add_patch_options(CommandLine* command, EvalOptions* options) {
   std::vector<std::string> quantities = patch_quantities();
   quantities.insert(quantities.begin(), "ndf");
   command->add_option("--quantity", options->quantity, "What is evaluated")
-      ->type_name("NAME")
-      ->check(CLI::IsMember(quantities))
-      ->capture_default_str();
+      .type_name("NAME")
+      .check(one_of(quantities))
+      .show_default();
   command->add_option("--part", options->part, "Light that bounced once, more often, or both")
-      ->type_name("NAME")
-      ->check(CLI::IsMember(std::vector<std::string>{"single", "multiple", "all"}))
-      ->capture_default_str();
+      .type_name("NAME")
+      .check(one_of(std::vector<std::string>{"single", "multiple", "all"}))
+      .show_default();
 }
 
 }  // namespace
 
-void add_eval(CLI::App& app, Command* chosen, const MethodRegistry& methods) {
+void add_eval(CommandLine& app, Command* chosen, const MethodRegistry& methods) {
   auto options = std::make_shared<EvalOptions>();
-  CLI::App* command = app.add_subcommand("eval", "Evaluates a table of queries: the batch engine bare");
+  CommandLine* command = app.add_subcommand("eval", "Evaluates a table of queries: the batch engine bare");
   command->footer(
       "Queries: rows u v cuu cuv cvv s t [roughness] of a float32 or float64 .npy array of shape (rows, 7 or "
       "8),\n"
@@ -152,18 +152,18 @@ void add_eval(CLI::App& app, Command* chosen, const MethodRegistry& methods) {
   command
       ->add_option("--roughness", options->roughness,
                    "Of all rows, 1e-5 to 1; a Beckmann alpha is sqrt(2) times this")
-      ->type_name("SIGMA");
+      .type_name("SIGMA");
   command->add_option("--queries", options->queries, "Table of queries, .npy or .csv")
-      ->required()
-      ->type_name("FILE");
-  command->add_option("-o,--output", options->output, "Densities, .npy")->required()->type_name("FILE");
+      .required()
+      .type_name("FILE");
+  command->add_option("-o,--output", options->output, "Densities, .npy").required().type_name("FILE");
   command
       ->add_option("--json", options->json,
                    "Writes what was done: map, device, bytes, seconds, queries a second")
-      ->type_name("FILE");
+      .type_name("FILE");
   command->add_option("--device", options->device, "OpenCL device, by its number in `mica devices`")
-      ->type_name("N")
-      ->capture_default_str();
+      .type_name("N")
+      .show_default();
   command->callback([options, chosen] { *chosen = [options] { return run(*options); }; });
 }
 

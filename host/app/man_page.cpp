@@ -38,7 +38,7 @@ std::string option_entry(const OptionWords& option) {
   for (const std::string& name : option.names)
     names += (names.empty() ? "" : ", ") + (option.positional ? italic(name) : bold(name));
   if (!option.positional && !option.value.empty()) names += " " + italic(option.value);
-  if (!option.choices.empty()) facts += fmt::format(" One of {}.", CLI::detail::join(option.choices, ", "));
+  if (!option.choices.empty()) facts += fmt::format(" One of {}.", fmt::join(option.choices, ", "));
   if (!option.range.empty()) facts += fmt::format(" A number {}.", option.range);
   if (!option.usual.empty()) facts += fmt::format(" Default: {}.", option.usual);
   if (option.required && !option.positional) facts += " Required.";

@@ -20,15 +20,14 @@ const std::map<std::string, ManualText>& manual_texts() {
 
 }  // namespace
 
-void add_manual(CLI::App& app, Command* chosen, const MethodRegistry& /*methods*/) {
+void add_manual(CommandLine& app, Command* chosen, const MethodRegistry& /*methods*/) {
   auto form = std::make_shared<std::string>();
-  CLI::App* command = app.add_subcommand("manual", "Prints the manual page, or what completes it in a shell");
-  command->group("");
-  command->add_option("form", *form, "man, bash, zsh or fish")->required()->check(CLI::IsMember([] {
-    std::vector<std::string> names;
-    for (const auto& [name, text] : manual_texts()) names.push_back(name);
-    return names;
-  }()));
+  CommandLine* command =
+      app.add_subcommand("manual", "Prints the manual page, or what completes it in a shell");
+  command->hide();
+  std::vector<std::string> names;
+  for (const auto& [name, text] : manual_texts()) names.push_back(name);
+  command->add_option("form", *form, "man, bash, zsh or fish").required().check(one_of(names));
   command->callback([form, chosen, &app] {
     *chosen = [form, &app] {
       fmt::print("{}", manual_texts().at(*form)(describe_command_line(app)));

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "host/app/command_line.h"
+#include "host/app/command_words.h"
 
 /// Texts that are made of the command line's own options, so that they cannot say anything else than
 /// `--help`.

@@ -37,19 +37,18 @@ int run(const SurfaceDescription& description, const std::string& recipe, const 
 /// One KIND of map on the command line: its options, and the recipe that the file keeps.
 class Kind {
  public:
-  Kind(CLI::App* map, const std::string& name, const std::string& description)
+  Kind(CommandLine* map, const std::string& name, const std::string& description)
       : name_(name), app_(map->add_subcommand(name, description)) {
     app_->add_option("-o,--output", *output_, "The map: EXR, three float channels, signed, green up")
-        ->required()
-        ->type_name("FILE");
+        .required()
+        .type_name("FILE");
   }
 
   /// @param value at its default; has to live as long as the command.
   template <typename T>
-  CLI::Option* add(const std::string& option, T* value, const std::string& type,
-                   const std::string& description) {
+  Option add(const std::string& option, T* value, const std::string& type, const std::string& description) {
     recipe_.push_back([=] { return fmt::format(" {} {}", option, *value); });
-    return app_->add_option(option, *value, description)->type_name(type)->capture_default_str();
+    return app_->add_option(option, *value, description).type_name(type).show_default();
   }
 
   template <typename Source>
@@ -74,12 +73,12 @@ class Kind {
 
  private:
   std::string name_;
-  CLI::App* app_;
+  CommandLine* app_;
   std::shared_ptr<std::string> output_ = std::make_shared<std::string>();
   std::vector<std::function<std::string()>> recipe_;
 };
 
-void add_spectrum(CLI::App* map, Command* chosen) {
+void add_spectrum(CommandLine* map, Command* chosen) {
   auto spectrum = std::make_shared<SpectrumSurface>();
   Kind kind(map, "spectrum", "Random bumps: a heightfield with a Gaussian power spectrum");
   kind.add_resolution_and_seed(spectrum.get());
@@ -89,7 +88,7 @@ void add_spectrum(CLI::App* map, Command* chosen) {
   kind.choose(chosen, Interpolation::bilinear, [=] { return *spectrum; });
 }
 
-void add_flakes(CLI::App* map, Command* chosen) {
+void add_flakes(CommandLine* map, Command* chosen) {
   auto flakes = std::make_shared<FlakesSurface>();
   Kind kind(map, "flakes", "Metallic flakes: Voronoi cells, each with one Beckmann-distributed normal");
   kind.add_resolution_and_seed(flakes.get());
@@ -100,7 +99,7 @@ void add_flakes(CLI::App* map, Command* chosen) {
   kind.choose(chosen, Interpolation::nearest, [=] { return *flakes; });
 }
 
-void add_brushed(CLI::App* map, Command* chosen) {
+void add_brushed(CommandLine* map, Command* chosen) {
   auto brushed = std::make_shared<BrushedSurface>();
   Kind kind(map, "brushed", "Brushed metal: a Gaussian heightfield, stretched along the brushing");
   kind.add_resolution_and_seed(brushed.get());
@@ -112,7 +111,7 @@ void add_brushed(CLI::App* map, Command* chosen) {
   kind.choose(chosen, Interpolation::bilinear, [=] { return *brushed; });
 }
 
-void add_scratches(CLI::App* map, Command* chosen) {
+void add_scratches(CommandLine* map, Command* chosen) {
   auto scratches = std::make_shared<ScratchesSurface>();
   auto profile = std::make_shared<std::string>("rounded");
   Kind kind(map, "scratches", "Random scratches in a flat surface");
@@ -130,14 +129,14 @@ void add_scratches(CLI::App* map, Command* chosen) {
   kind.add("--bend", &scratches->bend, "SHARE",
            "Scratches bulge up to this far from straight, over their length");
   kind.add("--profile", profile.get(), "NAME", "v, or rounded, which has a raised rim")
-      ->check(CLI::IsMember({"v", "rounded"}));
+      .check(one_of({"v", "rounded"}));
   kind.choose(chosen, Interpolation::bilinear, [=] {
     scratches->profile = *profile == "v" ? ScratchProfile::v : ScratchProfile::rounded;
     return *scratches;
   });
 }
 
-void add_dents(CLI::App* map, Command* chosen) {
+void add_dents(CommandLine* map, Command* chosen) {
   auto dents = std::make_shared<DentsSurface>();
   Kind kind(map, "dents", "Smooth round dents at random places");
   kind.add_resolution_and_seed(dents.get());
@@ -148,7 +147,7 @@ void add_dents(CLI::App* map, Command* chosen) {
   kind.choose(chosen, Interpolation::bilinear, [=] { return *dents; });
 }
 
-void add_bumps(CLI::App* map, Command* chosen) {
+void add_bumps(CommandLine* map, Command* chosen) {
   auto bumps = std::make_shared<BumpsSurface>();
   Kind kind(map, "bumps", "Bumpy plastic: caps of ellipsoids on a jittered grid");
   kind.add_resolution_and_seed(bumps.get());
@@ -160,7 +159,7 @@ void add_bumps(CLI::App* map, Command* chosen) {
   kind.choose(chosen, Interpolation::bilinear, [=] { return *bumps; });
 }
 
-void add_waves(CLI::App* map, Command* chosen) {
+void add_waves(CommandLine* map, Command* chosen) {
   auto waves = std::make_shared<WavesSurface>();
   Kind kind(map, "waves", "Wind sea in deep water, at one moment");
   kind.add_resolution_and_seed(waves.get());
@@ -187,26 +186,24 @@ LayersSurface layers_of_files(const std::vector<std::string>& paths, std::vector
   return layers;
 }
 
-void add_layers(CLI::App* map, Command* chosen) {
+void add_layers(CommandLine* map, Command* chosen) {
   auto paths = std::make_shared<std::vector<std::string>>();
   auto weights = std::make_shared<std::vector<double>>();
   Kind kind(map, "layers", "Sum of the slopes of other maps of one size");
   kind.add("--layer", paths.get(), "FILE", "A normal map; given as often as there are layers")
-      ->required()
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+      .required()
+      .repeated();
   kind.add("--weight", weights.get(), "FACTOR",
            "Of the slopes of the layer in the same place; default: 1 of each")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+      .repeated();
   kind.choose(chosen, Interpolation::bilinear, [=] { return layers_of_files(*paths, *weights); });
 }
 
 }  // namespace
 
-void add_map(CLI::App& app, Command* chosen, const MethodRegistry&) {
-  CLI::App* map = app.add_subcommand("map", "Synthesises a normal map");
-  map->require_subcommand(1);
+void add_map(CommandLine& app, Command* chosen, const MethodRegistry&) {
+  CommandLine* map = app.add_subcommand("map", "Synthesises a normal map");
+  map->require_subcommand();
   for (const auto add :
        {add_spectrum, add_flakes, add_brushed, add_scratches, add_dents, add_bumps, add_waves, add_layers}) {
     add(map, chosen);

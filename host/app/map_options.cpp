@@ -6,43 +6,43 @@ namespace mica::host::app {
 namespace {
 
 template <typename Enum>
-CLI::Validator one_of() {
-  return CLI::IsMember(list_words<Enum>());
+Values words_of() {
+  return one_of(list_words<Enum>());
 }
 
 }  // namespace
 
-void add_map_options(CLI::App* command, MapOptions* options) {
-  command->add_option("--map", options->path, "Normal map: an EXR, PNG or TIFF file")->type_name("FILE");
+void add_map_options(CommandLine* command, MapOptions* options) {
+  command->add_option("--map", options->path, "Normal map: an EXR, PNG or TIFF file").type_name("FILE");
   command
       ->add_option("--encoding", options->encoding,
                    "What its pixels are: unorm (n = 2c - 1), signed (n = c), height or slope; "
                    "default: unorm for integer pixels, signed for float pixels")
-      ->type_name("NAME")
-      ->check(one_of<Encoding>());
+      .type_name("NAME")
+      .check(words_of<Encoding>());
   command->add_option("--green", options->green, "Where a positive green channel leans: up or down the image")
-      ->type_name("NAME")
-      ->check(one_of<GreenDirection>())
-      ->capture_default_str();
+      .type_name("NAME")
+      .check(words_of<GreenDirection>())
+      .show_default();
   command
       ->add_option("--interpolation", options->interpolation,
                    "Of the normals between texels: nearest, bilinear or bicubic (Catmull-Rom)")
-      ->type_name("NAME")
-      ->check(one_of<Interpolation>())
-      ->capture_default_str();
+      .type_name("NAME")
+      .check(words_of<Interpolation>())
+      .show_default();
   command
       ->add_option(
           "--invalid", options->invalid,
           "Texels that are NaN, infinite or of zero length: refuse the map, or repair them from their "
           "neighbours")
-      ->type_name("NAME")
-      ->check(one_of<TexelRepair>())
-      ->capture_default_str();
+      .type_name("NAME")
+      .check(words_of<TexelRepair>())
+      .show_default();
   command
       ->add_option("--height-scale", options->height_scale,
                    "For encoding height: texels of height per unit of the image's value")
-      ->type_name("TEXELS")
-      ->capture_default_str();
+      .type_name("TEXELS")
+      .show_default();
 }
 
 Surface load_map(const MapOptions& options, SurfaceReport* report) {

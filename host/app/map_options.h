@@ -1,8 +1,8 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 
+#include "host/app/command_line.h"
 #include "host/surface/surface.h"
 
 namespace mica::host::app {
@@ -13,7 +13,7 @@ struct MapOptions {
   double height_scale = 1;
 };
 
-void add_map_options(CLI::App* command, MapOptions* options);
+void add_map_options(CommandLine* command, MapOptions* options);
 
 /// Loads the map; logs what was assumed and what cost accuracy. Throws what `make_surface` throws.
 Surface load_map(const MapOptions& options, SurfaceReport* report);

@@ -45,30 +45,29 @@ bool MethodOptions::given(const std::string& key) const {
   return std::any_of(texts.begin(), texts.end(), [&](const auto& text) { return text.first == key; });
 }
 
-void add_method_options(CLI::App* command, const MethodRegistry& methods,
+void add_method_options(CommandLine* command, const MethodRegistry& methods,
                         const MethodRegistry::Wanted& is_wanted, MethodOptions* options) {
   options->methods = &methods;
   command->add_option("--ndf", options->name, "Method; reference is the host in double precision")
-      ->required()
-      ->type_name("NAME")
-      ->check(CLI::IsMember(methods.names(is_wanted)));
+      .required()
+      .type_name("NAME")
+      .check(one_of(methods.names(is_wanted)));
   for (const Shared& shared : settings_of_all(methods, is_wanted)) {
     const std::string key = shared.entry.key;
-    CLI::Option* const option = command->add_option_function<std::string>(
+    Option option = command->add_option(
         "--" + key, [options, key](const std::string& text) { options->texts.emplace_back(key, text); },
         fmt::format("{} [{}]", shared.entry.help, shared.entry.value));
-    option->type_name(shared.entry.type)
-        ->group(fmt::format("Settings of {}", fmt::join(shared.methods, ", ")));
-    if (!shared.entry.words.empty()) option->check(CLI::IsMember(shared.entry.words));
+    option.type_name(shared.entry.type).group(fmt::format("Settings of {}", fmt::join(shared.methods, ", ")));
+    if (!shared.entry.words.empty()) option.check(one_of(shared.entry.words));
   }
 }
 
-void add_tolerance_option(CLI::App* command, MethodOptions* options) {
+void add_tolerance_option(CommandLine* command, MethodOptions* options) {
   command
       ->add_option("--tolerance", options->tolerance,
                    "Relative error allowed: auto keeps it as relative L2 (default 0.01), triangles keeps "
                    "1e-4, reference takes 1e-12 to 0.1")
-      ->type_name("ERROR");
+      .type_name("ERROR");
 }
 
 const Method& method_of(const MethodOptions& options) {

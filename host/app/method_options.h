@@ -1,11 +1,11 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "host/app/command_line.h"
 #include "host/methods/registry.h"
 
 namespace mica::host::app {
@@ -24,10 +24,10 @@ struct MethodOptions {
 };
 
 /// Adds `--ndf`, of methods that `is_wanted`, and every setting of theirs.
-void add_method_options(CLI::App* command, const MethodRegistry& methods,
+void add_method_options(CommandLine* command, const MethodRegistry& methods,
                         const MethodRegistry::Wanted& is_wanted, MethodOptions* options);
 /// Adds `--tolerance` as well.
-void add_tolerance_option(CLI::App* command, MethodOptions* options);
+void add_tolerance_option(CommandLine* command, MethodOptions* options);
 
 const Method& method_of(const MethodOptions& options);
 /// Throws UsageError for values out of range, and for a tolerance that the method cannot keep.

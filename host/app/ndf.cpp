@@ -144,19 +144,16 @@ int run(const NdfOptions& options) {
 }
 
 /// Numbers joined by commas in one argument.
-CLI::Option* add_numbers(CLI::App* command, const std::string& name, std::vector<double>* numbers, int min,
-                         int max, const std::string& description, const std::string& type) {
-  return command->add_option(name, *numbers, description)
-      ->delimiter(',')
-      ->expected(min, max)
-      ->type_name(type);
+Option add_numbers(CommandLine* command, const std::string& name, std::vector<double>* numbers, int min,
+                   int max, const std::string& description, const std::string& type) {
+  return command->add_option(name, *numbers, description).numbers(',', min, max).type_name(type);
 }
 
 }  // namespace
 
-void add_ndf(CLI::App& app, Command* chosen, const MethodRegistry& methods) {
+void add_ndf(CommandLine& app, Command* chosen, const MethodRegistry& methods) {
   auto options = std::make_shared<NdfOptions>();
-  CLI::App* command = app.add_subcommand("ndf", "One footprint's distribution of normals as an image");
+  CommandLine* command = app.add_subcommand("ndf", "One footprint's distribution of normals as an image");
   command->footer(
       "The image shows D(s, t), the density of normals over the unit disk: s to the right, t up, 0 outside "
       "the disk.\n"
@@ -164,7 +161,7 @@ void add_ndf(CLI::App& app, Command* chosen, const MethodRegistry& methods) {
       "is shown\n"
       "at 80%, brighter ones roll off.");
   add_map_options(command, &options->map);
-  command->get_option("--map")->required();
+  command->option("--map").required();
   add_numbers(command, "--center", &options->center_uv, 2, 2,
               "Mean of the Gaussian footprint, in map periods: the map is [0,1)^2", "U,V");
   command
@@ -172,31 +169,31 @@ void add_ndf(CLI::App& app, Command* chosen, const MethodRegistry& methods) {
                    "Many footprints: rows u v [roughness] of a .npy or .csv file; the output is a .npy of a "
                    "row a footprint, its "
                    "pixels from the top left")
-      ->type_name("FILE");
+      .type_name("FILE");
   add_numbers(command, "--sigma", &options->sigma, 1, 3,
               "Standard deviation of the footprint; or of both axes, and the angle from u to the first",
               "TEXELS[,TEXELS,DEGREES]")
-      ->required();
+      .required();
   command
       ->add_option("--roughness", options->roughness,
                    "Standard deviation of the intrinsic roughness on the disk, 1e-5 to 1")
-      ->required()
-      ->type_name("SIGMA");
+      .required()
+      .type_name("SIGMA");
   add_method_options(
       command, methods, [](const MethodTraits& traits) { return traits.map && traits.densities; },
       &options->method);
   command->add_option("--size", options->size, "Pixels a side, 1 to 8192")
-      ->type_name("N")
-      ->check(CLI::Range(1, 8192))
-      ->capture_default_str();
+      .type_name("N")
+      .check(between(1, 8192))
+      .show_default();
   add_numbers(command, "--window", &options->window, 3, 3,
               "Part of the disk that is shown: its centre and half its side", "S,T,RADIUS");
   command->add_option("-o,--output", options->output, "The image, .exr or .png; with --centers .npy")
-      ->required()
-      ->type_name("FILE");
+      .required()
+      .type_name("FILE");
   command->add_option("--device", options->device, "OpenCL device, by its number in `mica devices`")
-      ->type_name("N")
-      ->capture_default_str();
+      .type_name("N")
+      .show_default();
   command->callback([options, chosen] { *chosen = [options] { return run(*options); }; });
 }
 

@@ -127,10 +127,10 @@ int run(const RenderOptions& options, const MethodRegistry& methods) {
 
 }  // namespace
 
-void add_render(CLI::App& app, Command* chosen, const MethodRegistry& methods) {
+void add_render(CommandLine& app, Command* chosen, const MethodRegistry& methods) {
   auto options = std::make_shared<RenderOptions>();
-  CLI::App* command = app.add_subcommand("render", "Render the image of a job file");
-  command->add_option("job", options->job, "Job file, TOML")->required();
+  CommandLine* command = app.add_subcommand("render", "Render the image of a job file");
+  command->add_option("job", options->job, "Job file, TOML").required();
   command->add_option("-o,--output", options->output,
                       "FILE.exr (with FILE.png beside it) or FILE.png; default out/<name of the job>.exr; "
                       "frames are numbered, FILE.0007.exr");

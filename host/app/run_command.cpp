@@ -19,18 +19,14 @@ int code(ExitCode exit_code) {
 }
 
 int parse_and_run(int argc, const char* const* argv, const MethodRegistry& methods) {
-  CLI::App app("Mica evaluates glint normal distribution functions on OpenCL and makes pictures of them.");
-  app.set_version_flag("--version", about);
-  app.require_subcommand(1);
+  CommandLine app("Mica evaluates glint normal distribution functions on OpenCL and makes pictures of them.");
+  app.version_flag("--version", about);
+  app.require_subcommand();
   Command chosen;
   for (const auto add :
        {add_render, add_check, add_ndf, add_eval, add_map, add_devices, add_selftest, add_bench, add_manual})
     add(app, &chosen, methods);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : code(ExitCode::usage);
-  }
+  if (const std::optional<int> code = app.parse(argc, argv)) return *code;
   return chosen();
 }
 

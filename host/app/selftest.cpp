@@ -177,11 +177,11 @@ int run(int device_index, double evaluations, const std::string& json_path, cons
 
 }  // namespace
 
-void add_selftest(CLI::App& app, Command* chosen, const MethodRegistry& methods) {
+void add_selftest(CommandLine& app, Command* chosen, const MethodRegistry& methods) {
   auto device_index = std::make_shared<int>(0);
   auto json_path = std::make_shared<std::string>();
   auto evaluations = std::make_shared<double>(0);
-  CLI::App* command =
+  CommandLine* command =
       app.add_subcommand("selftest", "Checks the accuracy of a device's arithmetic and of every kernel");
   command->footer(
       "Errors are in units of what is allowed; above 1 a check fails, and the exit code is 3. Densities are\n"
@@ -192,14 +192,14 @@ void add_selftest(CLI::App& app, Command* chosen, const MethodRegistry& methods)
       "density\n"
       "of its draws.");
   command->add_option("--device", *device_index, "OpenCL device, by its number in `mica devices`")
-      ->type_name("N")
-      ->capture_default_str();
-  command->add_option("--json", *json_path, "Writes the checks as JSON")->type_name("FILE");
+      .type_name("N")
+      .show_default();
+  command->add_option("--json", *json_path, "Writes the checks as JSON").type_name("FILE");
   command
       ->add_option("--evaluations", *evaluations,
                    "Asks the hard cases on, until so many answers were looked at: 1e8 takes an hour or so")
-      ->type_name("N")
-      ->check(CLI::Range(0.0, 1e12));
+      .type_name("N")
+      .check(between(0.0, 1e12));
   command->callback([=, &methods] {
     *chosen = [=, &methods] { return run(*device_index, *evaluations, *json_path, methods); };
   });
