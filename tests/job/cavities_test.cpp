@@ -5,7 +5,7 @@ namespace mica::host::cavities_test {
 namespace {
 
 using test::JobFolder;
-using test::least_job;
+using test::kLeastJob;
 using test::replaced;
 
 std::string with(const std::string& keys) {
