@@ -10,8 +10,11 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "host/base/masking.h"
 #include "host/base/stopwatch.h"
+#include "host/device/device.h"
 #include "host/measure/coherent.h"
+#include "host/methods/patch_brdf.h"
 #include "host/methods/registry.h"
 #include "mica/error.h"
 

@@ -97,7 +97,7 @@ inline double integrate_paper_triangle(const Quadratic& q) {
   const paper::OuterGaussian::Place first = gaussian.at(0), last = gaussian.at(1);
   const double difference = paper::experf(gaussian, high, high_slope, first, last) -
                             paper::experf(gaussian, low, low_slope, first, last);
-  return 0.5 * paper::sqrt_pi / root * std::exp(-0.5 * peak) * difference;
+  return 0.5 * paper::kSqrtPi / root * std::exp(-0.5 * peak) * difference;
 }
 
 }  // namespace mica::host::bench

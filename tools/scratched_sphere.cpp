@@ -9,8 +9,10 @@
 #include <string>
 
 #include "host/base/stopwatch.h"
+#include "host/device/device.h"
 #include "host/image/image.h"
 #include "host/measure/point_samples.h"
+#include "host/methods/evaluator.h"
 #include "host/methods/registry.h"
 #include "host/render/film.h"
 #include "host/scene/scene.h"

@@ -17,6 +17,8 @@
 
 namespace {
 
+using mica::host::kPi;
+
 constexpr int kWidth = 512, kHeight = 256;
 constexpr int kSamples = 4;  // a pixel and axis
 

@@ -118,7 +118,7 @@ TEST(Auto, LooksAtManyWideFootprintsByAPrecisePyramid) {
   EXPECT_EQ(choice.evaluator.substr(0, 7), "pyramid");
   EXPECT_GE(choice.samples, 256u);
   const std::vector<float> expected = make_evaluator("triangles", device(), surface)->evaluate(queries);
-  const double error = relative_l2(chooser.evaluate(queries), {expected.begin(), expected.end()});
+  const double error = relative_l2(chooser.evaluate(queries), expected);
   std::printf("%s: %.2f%%, at most %.2f%%\n", choice.evaluator.c_str(), 100 * error,
               100 * choice.upper_bound);
   EXPECT_LE(error, choice.upper_bound);

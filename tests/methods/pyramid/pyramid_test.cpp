@@ -166,7 +166,7 @@ TEST(Pyramid, DropsOnlyWhatIsBelowTheCutoff) {
     return pyramid.evaluate(queries);
   };
   const std::vector<float> all = evaluate(1e-12);
-  const double dropped = relative_l2(evaluate(1e-5), {all.begin(), all.end()});
+  const double dropped = relative_l2(evaluate(1e-5), all);
   std::printf("%.2g\n", dropped);
   EXPECT_LE(dropped, 2e-6);
 }
