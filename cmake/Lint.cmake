@@ -27,7 +27,7 @@ set(compile_kernel ${CLANG} -x cl -cl-std=CL1.2 -fsyntax-only -Wall -Wextra -Wer
 set(kernel_stamps)
 foreach(file ${kernel_programs} ${kernel_headers})
   get_filename_component(name ${file} NAME)
-  if(name MATCHES "^(catmull_rom|texel_quads|walk_leaves|walk_records)\\.h$")
+  if(name MATCHES "^(catmull_rom|texel_quads|turned_elements|turned_slopes|walk_leaves|walk_records)\\.h$")
     continue()  # parts of the kernels that include them, whose types they use
   endif()
   set(commands)
@@ -39,6 +39,12 @@ foreach(file ${kernel_programs} ${kernel_headers})
         list(APPEND commands COMMAND ${compile_kernel} -DMICA_WAVE_ITEMS=${wave_items}
                                      -DMICA_INTERPOLATION=${interpolation} ${file})
       endforeach()
+      if(name MATCHES "^(triangles|gaussians|smooth|pyramid)\\.cl$")
+        foreach(interpolation 0 1 2)
+          list(APPEND commands COMMAND ${compile_kernel} -DMICA_WAVE_ITEMS=${wave_items} -DMICA_FIRST_ORDER=1
+                                       -DMICA_INTERPOLATION=${interpolation} ${file})
+        endforeach()
+      endif()
       if(name MATCHES "^pyramid")
         list(APPEND commands COMMAND ${compile_kernel} -DMICA_WAVE_ITEMS=${wave_items} -DMICA_RECORD_BITS=8 ${file})
       endif()

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <deque>
 
+#include "host/methods/map/first_order.h"
 #include "mica/error.h"
 
 namespace mica::host {
@@ -75,7 +76,9 @@ GridEvaluator::GridEvaluator(Device& device, const GlintGrid& grid, std::optiona
 }
 
 std::unique_ptr<PendingDensities> GridEvaluator::start(const std::vector<Query>& queries) {
-  return start(queries, {grid_.point()});
+  return start_by_order(
+      queries, [this](const std::vector<Query>& some) { return start(some, {grid_.point()}); },
+      refuse_first_order("grid"));
 }
 
 std::unique_ptr<GridDensities> GridEvaluator::start(const std::vector<Query>& queries,

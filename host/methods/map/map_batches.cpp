@@ -17,6 +17,10 @@ using device_types::mica_mixture_query;
 using device_types::mica_patch_query;
 using device_types::mica_pyramid_query;
 using device_types::mica_smooth_query;
+using device_types::mica_turned_mixture_query;
+using device_types::mica_turned_pyramid_query;
+using device_types::mica_turned_query;
+using device_types::mica_turned_smooth_query;
 
 constexpr std::size_t kCpuGroup = 16;  // queries a work-group on a CPU
 
@@ -48,6 +52,18 @@ mica_map_query& place_of(mica_pyramid_query& query) {
 }
 mica_map_query& place_of(mica_smooth_query& query) {
   return query.map;
+}
+mica_map_query& place_of(mica_turned_query& query) {
+  return query.map;
+}
+mica_map_query& place_of(mica_turned_mixture_query& query) {
+  return query.mixture.map;
+}
+mica_map_query& place_of(mica_turned_pyramid_query& query) {
+  return query.pyramid.map;
+}
+mica_map_query& place_of(mica_turned_smooth_query& query) {
+  return query.smooth.map;
 }
 
 /// Sorts by the Morton code of the tile under the mean: neighbours in a batch then read the same texels.
@@ -205,5 +221,9 @@ template class MapBatches<mica_cavity_query>;
 template class MapBatches<mica_patch_query>;
 template class MapBatches<mica_pyramid_query>;
 template class MapBatches<mica_smooth_query>;
+template class MapBatches<mica_turned_query>;
+template class MapBatches<mica_turned_mixture_query>;
+template class MapBatches<mica_turned_pyramid_query>;
+template class MapBatches<mica_turned_smooth_query>;
 
 }  // namespace mica::host

@@ -36,6 +36,8 @@ class MapBatches {
   /// Sends queries, in any order and with any slot. Answers come in the order of the queries.
   std::unique_ptr<PendingDensities> start(std::vector<DeviceQuery> queries);
 
+  /// The structure on the device: another kernel may share it.
+  const std::vector<cl::Buffer>& structure() const { return structure_; }
   const device_types::mica_map_grid& grid() const { return grid_; }
   std::size_t device_bytes() const { return device_bytes_; }
   double device_seconds() const { return *device_seconds_; }
@@ -61,5 +63,9 @@ extern template class MapBatches<device_types::mica_cavity_query>;
 extern template class MapBatches<device_types::mica_patch_query>;
 extern template class MapBatches<device_types::mica_pyramid_query>;
 extern template class MapBatches<device_types::mica_smooth_query>;
+extern template class MapBatches<device_types::mica_turned_query>;
+extern template class MapBatches<device_types::mica_turned_mixture_query>;
+extern template class MapBatches<device_types::mica_turned_pyramid_query>;
+extern template class MapBatches<device_types::mica_turned_smooth_query>;
 
 }  // namespace mica::host
