@@ -23,7 +23,9 @@ endfunction()
 set(kernels ${CMAKE_SOURCE_DIR}/kernels)
 file(GLOB_RECURSE kernel_programs CONFIGURE_DEPENDS ${kernels}/*.cl)
 file(GLOB_RECURSE kernel_headers CONFIGURE_DEPENDS ${kernels}/*.h)
-set(parts map/catmull_rom.h map/texel_quads.h map/walk_leaves.h pyramid/walk_records.h)  # of what includes them
+set(parts map/catmull_rom.h map/texel_quads.h map/walk_leaves.h pyramid/turned_elements.h pyramid/walk_records.h
+    smooth/turned_slopes.h)  # of what includes them
+set(of_first_order gaussians/gaussians.cl pyramid/pyramid.cl smooth/smooth.cl triangles/triangles.cl)  # a variant
 set(of_records images/pyramid_images.cl pyramid/pyramid.cl)  # whose width is a variant
 set(compile_kernel ${CLANG} -x cl -cl-std=CL1.2 -fsyntax-only -Wall -Wextra -Werror -I ${kernels})
 set(kernel_stamps)
@@ -41,6 +43,12 @@ foreach(file ${kernel_programs} ${kernel_headers})
         list(APPEND commands COMMAND ${compile_kernel} -DMICA_WAVE_ITEMS=${wave_items}
                                      -DMICA_INTERPOLATION=${interpolation} ${file})
       endforeach()
+      if(name IN_LIST of_first_order)
+        foreach(interpolation 0 1 2)
+          list(APPEND commands COMMAND ${compile_kernel} -DMICA_WAVE_ITEMS=${wave_items} -DMICA_FIRST_ORDER=1
+                                       -DMICA_INTERPOLATION=${interpolation} ${file})
+        endforeach()
+      endif()
       if(name IN_LIST of_records)
         list(APPEND commands COMMAND ${compile_kernel} -DMICA_WAVE_ITEMS=${wave_items} -DMICA_RECORD_BITS=8 ${file})
       endif()

@@ -96,6 +96,46 @@
   OFFSET(mica_image_window, bottom_t)                \
   OFFSET(mica_image_window, step)                    \
   OFFSET(mica_image_window, pixels)                  \
-  OFFSET(mica_image_window, squares)
+  OFFSET(mica_image_window, squares)                 \
+  SIZE(mica_turned_lobe)                             \
+  OFFSET(mica_turned_lobe, lobe_1s)                  \
+  OFFSET(mica_turned_lobe, lobe_1t)                  \
+  OFFSET(mica_turned_lobe, lobe_2s)                  \
+  OFFSET(mica_turned_lobe, lobe_2t)                  \
+  OFFSET(mica_turned_lobe, turn_1x)                  \
+  OFFSET(mica_turned_lobe, turn_1y)                  \
+  OFFSET(mica_turned_lobe, turn_2x)                  \
+  OFFSET(mica_turned_lobe, turn_2y)                  \
+  SIZE(mica_turned_query)                            \
+  OFFSET(mica_turned_query, map)                     \
+  OFFSET(mica_turned_query, lobe)                    \
+  SIZE(mica_turned_mixture_query)                    \
+  OFFSET(mica_turned_mixture_query, mixture)         \
+  OFFSET(mica_turned_mixture_query, lobe)            \
+  OFFSET(mica_turned_mixture_query, turn_sx)         \
+  OFFSET(mica_turned_mixture_query, turn_sy)         \
+  OFFSET(mica_turned_mixture_query, turn_tx)         \
+  OFFSET(mica_turned_mixture_query, turn_ty)         \
+  OFFSET(mica_turned_mixture_query, spread_turn)     \
+  SIZE(mica_turned_smooth_query)                     \
+  OFFSET(mica_turned_smooth_query, smooth)           \
+  OFFSET(mica_turned_smooth_query, cross_xx)         \
+  OFFSET(mica_turned_smooth_query, cross_xy)         \
+  OFFSET(mica_turned_smooth_query, cross_yx)         \
+  OFFSET(mica_turned_smooth_query, cross_yy)         \
+  OFFSET(mica_turned_smooth_query, turn_xx)          \
+  OFFSET(mica_turned_smooth_query, turn_xy)          \
+  OFFSET(mica_turned_smooth_query, turn_yy)          \
+  OFFSET(mica_turned_smooth_query, lobe_xx)          \
+  OFFSET(mica_turned_smooth_query, lobe_xy)          \
+  OFFSET(mica_turned_smooth_query, lobe_yy)          \
+  SIZE(mica_turned_pyramid_query)                    \
+  OFFSET(mica_turned_pyramid_query, pyramid)         \
+  OFFSET(mica_turned_pyramid_query, lobe)            \
+  OFFSET(mica_turned_pyramid_query, turn_sx)         \
+  OFFSET(mica_turned_pyramid_query, turn_sy)         \
+  OFFSET(mica_turned_pyramid_query, turn_tx)         \
+  OFFSET(mica_turned_pyramid_query, turn_ty)         \
+  OFFSET(mica_turned_pyramid_query, spread_turn)
 
 #endif  // MICA_STRUCT_LAYOUT_H

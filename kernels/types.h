@@ -87,6 +87,22 @@ typedef struct {
   MICA_INT slot;      // where the result goes
 } mica_map_query;
 
+// A half vector that turns over the footprint, and a lobe that need not be round. With the lobe's axes, each
+// divided by its standard deviation, as the rows of L, and a turn of H a texel: normals less the half vector
+// are whitened by L, and less L H (x, y) at (x, y) texels from the footprint's mean.
+typedef struct {
+  MICA_FLOAT lobe_1s, lobe_1t;  // L
+  MICA_FLOAT lobe_2s, lobe_2t;
+  MICA_FLOAT turn_1x, turn_1y;  // L H
+  MICA_FLOAT turn_2x, turn_2y;
+} mica_turned_lobe;
+
+// A query with one.
+typedef struct {
+  mica_map_query map;  // of which inverse_roughness is not used
+  mica_turned_lobe lobe;
+} mica_turned_query;
+
 // What is asked of V-shaped cavities about all light from a view. [Che19]
 typedef struct {
   mica_map_query map;                 // its normals do not matter
@@ -108,6 +124,17 @@ typedef struct {
   MICA_FLOAT spread_variance;  // what a squared `spread` of a node counts for, in roughnesses squared
   MICA_FLOAT kernel_variance;  // k
 } mica_mixture_query;
+
+// The same with a turned lobe; the mixture's inverse_roughness is that of the lobe's major axis, for culling,
+// and its blurs are of the disk.
+typedef struct {
+  mica_mixture_query mixture;
+  mica_turned_lobe lobe;
+  MICA_FLOAT turn_sx, turn_sy;  // H a texel, on the disk
+  MICA_FLOAT turn_tx, turn_ty;
+  MICA_FLOAT
+  spread_turn;  // what it adds to an element's variance, at most, in squares of the lobe's major axis
+} mica_turned_mixture_query;
 
 // One query of a mixture of Beckmann lobes; `map` is in units of an element, and its half_s, half_t are not
 // used. [Che18] Eq. 9.
@@ -145,6 +172,17 @@ typedef struct {
   MICA_FLOAT slope_x, slope_y;  // slope of the half vector
 } mica_smooth_query;
 
+// The same with a half vector that turns and a lobe that need not be round. With the turn T of slopes a cell,
+// W the covariance of the cells' weights and C that of the footprint in cells, slopes whose covariance with
+// the cells' places is X have that of X W^-1 C with the footprint.
+typedef struct {
+  mica_smooth_query smooth;       // of which inverse_roughness is not used
+  MICA_FLOAT cross_xx, cross_xy;  // W^-1 C T'
+  MICA_FLOAT cross_yx, cross_yy;
+  MICA_FLOAT turn_xx, turn_xy, turn_yy;  // T C T'
+  MICA_FLOAT lobe_xx, lobe_xy, lobe_yy;  // the lobe's covariance on the disk
+} mica_turned_smooth_query;
+
 #ifdef __cplusplus
 static_assert(sizeof(mica_slope_footprint) == 48 && offsetof(mica_slope_footprint, sigma_y) == 36);
 static_assert(sizeof(mica_patch_query) == 164 && offsetof(mica_patch_query, weight) == 160);
@@ -154,6 +192,11 @@ static_assert(sizeof(mica_lobe_query) == 88 && offsetof(mica_lobe_query, slope_x
 static_assert(sizeof(mica_mixture_query) == 96 && offsetof(mica_mixture_query, axis_1x) == 64 &&
               offsetof(mica_mixture_query, kernel_variance) == 92);
 static_assert(sizeof(mica_cavity_query) == 100 && offsetof(mica_cavity_query, lobe_sigma) == 96);
+static_assert(sizeof(mica_turned_lobe) == 32 && offsetof(mica_turned_lobe, turn_2y) == 28);
+static_assert(sizeof(mica_turned_query) == 96 && offsetof(mica_turned_query, lobe) == 64);
+static_assert(sizeof(mica_turned_mixture_query) == 148 &&
+              offsetof(mica_turned_mixture_query, spread_turn) == 144);
+static_assert(sizeof(mica_turned_smooth_query) == 160 && offsetof(mica_turned_smooth_query, lobe_xx) == 148);
 static_assert(sizeof(mica_map_grid) == 16 && offsetof(mica_map_grid, blocks_x) == 8);
 static_assert(sizeof(mica_map_query) == 64 && offsetof(mica_map_query, whiten_1x) == 16 &&
               offsetof(mica_map_query, half_s) == 40 && offsetof(mica_map_query, slot) == 60);

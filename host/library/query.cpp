@@ -85,6 +85,10 @@ Query to_query(const mica::Query& query) {
   result.footprint.cov_uv << query.cuu, query.cuv, query.cuv, query.cvv;
   result.half_vector = {query.s, query.t};
   result.roughness = query.roughness;
+  result.half_vector_turn << query.turn.su, query.turn.sv, query.turn.tu, query.turn.tv;
+  const LobeCovariance& lobe = query.lobe;
+  if (lobe.rss != 0 || lobe.rst != 0 || lobe.rtt != 0)
+    result.lobe_cov = (Eigen::Matrix2d() << lobe.rss, lobe.rst, lobe.rst, lobe.rtt).finished();
   return result;
 }
 
@@ -95,6 +99,10 @@ mica::Query to_public(const Query& query) {
   result.cvv = query.footprint.cov_uv(1, 1);
   result.s = query.half_vector.x(), result.t = query.half_vector.y();
   result.roughness = query.roughness;
+  const Eigen::Matrix2d& turn = query.half_vector_turn;
+  result.turn = {turn(0, 0), turn(0, 1), turn(1, 0), turn(1, 1)};
+  if (query.lobe_cov)
+    result.lobe = {(*query.lobe_cov)(0, 0), (*query.lobe_cov)(0, 1), (*query.lobe_cov)(1, 1)};
   return result;
 }
 

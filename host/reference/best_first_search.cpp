@@ -88,12 +88,11 @@ BestFirstSearch::CellRange BestFirstSearch::cells_of(int level, int i, int j, lo
 }
 
 double BestFirstSearch::lower_bound(const NormalBox& box, const CellRange& cells) const {
-  const Eigen::Vector2d low = frame_.whiten_normal(box.low), high = frame_.whiten_normal(box.high);
   const auto corner = [&](long i, long j) { return frame_.whiten_position(map_.corner_texels(i, j)); };
   const Eigen::Vector2d corners[4] = {corner(cells.begin_i, cells.begin_j),
                                       corner(cells.end_i, cells.begin_j), corner(cells.end_i, cells.end_j),
                                       corner(cells.begin_i, cells.end_j)};
-  return low.cwiseMax(-high).cwiseMax(0.0).squaredNorm() + nearest_squared(corners, 4);
+  return frame_.lobe_distance_squared(box, corners, 4) + nearest_squared(corners, 4);
 }
 
 }  // namespace mica::host::reference

@@ -85,17 +85,21 @@ BinnedNdf bin_normals(const Surface& surface, const Query& query, const BinningS
   const QueryFrame frame(surface, query, 0);
   const Eigen::Vector2d& mean = frame.mean_texels();
   const Eigen::Matrix2d factor = cholesky_factor(frame.cov_texels());
+  const Eigen::Matrix2d lobe = cholesky_factor(lobe_covariance(query));
+  const Eigen::Matrix2d turn_texels =
+      query.half_vector_turn * Eigen::Vector2d(1.0 / surface.width(), 1.0 / surface.height()).asDiagonal();
 
   tbb::combinable<Histogram> histograms([&] { return Histogram(settings); });
-  tbb::parallel_for(tbb::blocked_range<std::uint64_t>(0, settings.samples, 1 << 14),
-                    [&](const tbb::blocked_range<std::uint64_t>& range) {
-                      Histogram& histogram = histograms.local();
-                      for (std::uint64_t n = range.begin(); n < range.end(); ++n) {
-                        const Eigen::Vector2d u = mean + factor * standard_normals(settings.seed, 0, n);
-                        const Eigen::Vector2d perturbation = standard_normals(settings.seed, 1, n);
-                        histogram.count(normal_at(surface, u) + query.roughness * perturbation);
-                      }
-                    });
+  tbb::parallel_for(
+      tbb::blocked_range<std::uint64_t>(0, settings.samples, 1 << 14),
+      [&](const tbb::blocked_range<std::uint64_t>& range) {
+        Histogram& histogram = histograms.local();
+        for (std::uint64_t n = range.begin(); n < range.end(); ++n) {
+          const Eigen::Vector2d offset = factor * standard_normals(settings.seed, 0, n);
+          const Eigen::Vector2d perturbation = standard_normals(settings.seed, 1, n);
+          histogram.count(normal_at(surface, mean + offset) - turn_texels * offset + lobe * perturbation);
+        }
+      });
   BinnedNdf result;
   result.settings = settings;
   result.counts.resize(static_cast<std::size_t>(settings.bins) * settings.bins);

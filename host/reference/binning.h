@@ -33,9 +33,9 @@ struct BinnedNdf {
 };
 
 /// The second opinion on Eq. 6 of [Yan14], by its sec. 5: sample G_p, look up the normal, perturb it by G_r,
-/// count bins. The query's half vector plays no part. Runs in parallel; the same for any number of threads.
-/// Throws UsageError for a footprint or roughness that the oracle refuses, and for bins < 1, samples < 1 or a
-/// window that is not positive.
+/// count bins: of n(u) - H (u - c), where the half vector turns. The half vector itself plays no part. Runs
+/// in parallel; the same for any number of threads. Throws UsageError for a footprint or roughness that the
+/// oracle refuses, and for bins < 1, samples < 1 or a window that is not positive.
 BinnedNdf bin_normals(const Surface& surface, const Query& query, const BinningSettings& settings);
 
 }  // namespace mica::host::reference

@@ -45,7 +45,7 @@ void BlockIntegrator::collect_cells(int block_i, int block_j, long period_x, lon
     for (int j = 0, cell = 0; j < block.rows; ++j) {
       for (int i = 0; i < block.columns; ++i, ++cell) {
         const Eigen::Vector2d& position = positions[(j + dj) * pitch + i + di];
-        const Eigen::Vector2d normal = frame_.whiten_normal(block.normal(i, j, di, dj));
+        const Eigen::Vector2d normal = frame_.whiten_normal(block.normal(i, j, di, dj), position);
         components[0][cell] = position.x();
         components[1][cell] = position.y();
         components[2][cell] = normal.x();

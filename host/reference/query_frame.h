@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 
 #include "host/base/query.h"
+#include "host/reference/cell_grid.h"
 #include "host/surface/surface.h"
 
 namespace mica::host::reference {
@@ -10,21 +11,25 @@ namespace mica::host::reference {
 using Whitened =
     Eigen::Vector4d;  ///< position and normal in units of their standard deviations, relative to the query
 
-/// One query seen from the surface: the affine map that turns G_p(u) G_r(n - s) into exp(-|w|^2 / 2), w in
-/// R^4.
+/// One query seen from the surface: the affine map that turns G_p(u) G_r(n(u) - h - H (u - c)) into
+/// exp(-|w|^2 / 2), w in R^4.
 class QueryFrame {
  public:
   /// @param negligible relative size of the ripple up to which a wide footprint counts as covering the map
-  /// evenly Throws UsageError if a number is not finite, the covariance is not positive definite or the
-  /// roughness is not > 0.
+  /// evenly. One over which the half vector turns never does. Throws UsageError if a number is not finite, a
+  /// covariance is not positive definite or the roughness is not > 0.
   QueryFrame(const Surface& surface, const Query& query, double negligible);
 
   /// Components 0 and 1 of w at a position in texels.
   Eigen::Vector2d whiten_position(const Eigen::Vector2d& position_texels) const;
-  /// Components 2 and 3 of w at a normal on the disk.
-  Eigen::Vector2d whiten_normal(const Eigen::Vector2d& normal) const {
-    return (normal - half_vector_) * inverse_roughness_;
+  /// Components 2 and 3 of w at a normal on the disk and a position that whitens to components 0 and 1.
+  Eigen::Vector2d whiten_normal(const Eigen::Vector2d& normal,
+                                const Eigen::Vector2d& whitened_position = Eigen::Vector2d::Zero()) const {
+    return whiten_lobe_ * (normal - half_vector_) - whitened_turn_ * whitened_position;
   }
+  /// Lower bound of the squared length of components 2 and 3 where normals lie in a box and positions in the
+  /// hull of `corners`, whitened.
+  double lobe_distance_squared(const NormalBox& box, const Eigen::Vector2d* corners, int count) const;
 
   /// True where the footprint spans so many periods that its sum over them is constant: then one period is
   /// enough, and positions whiten to 0.
@@ -39,9 +44,12 @@ class QueryFrame {
   double rounding() const { return rounding_; }
 
  private:
+  double set_lobe(const Query& query);
+
   Eigen::Vector2d mean_texels_, half_vector_;
   Eigen::Matrix2d cov_texels_;
-  double inverse_roughness_;
+  Eigen::Matrix2d whiten_lobe_;           ///< inverse of the Cholesky factor of the lobe's covariance
+  Eigen::Matrix2d whitened_turn_;         ///< change of the whitened half vector a unit of whitened position
   double inverse_x_, shear_, inverse_y_;  ///< entries of the inverse of cov_texels' Cholesky factor
   bool covers_evenly_;
   double effective_area_, scale_, rounding_;

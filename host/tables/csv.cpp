@@ -29,10 +29,17 @@ std::vector<std::string_view> split(std::string_view line) {
   return cells;
 }
 
+std::vector<std::string> all_names(const TableColumns& columns) {
+  std::vector<std::string> names = columns.required;
+  for (const std::vector<std::string>& group : columns.groups)
+    names.insert(names.end(), group.begin(), group.end());
+  return names;
+}
+
 class CsvReader {
  public:
-  CsvReader(const std::string& path, const std::vector<std::string>& names, std::size_t required)
-      : path_(path), names_(names), required_(required), stream_(path) {
+  CsvReader(const std::string& path, const TableColumns& columns)
+      : path_(path), columns_(columns), names_(all_names(columns)), stream_(path) {
     if (!stream_) throw FileError(path + ": no such file, or it cannot be read");
   }
 
@@ -42,6 +49,7 @@ class CsvReader {
     read_names(line);
     Table table;
     table.columns = order_.size();
+    table.groups = place_groups();
     while (next_line(&line)) {
       read_row(line, &table.values);
       ++table.rows;
@@ -55,11 +63,9 @@ class CsvReader {
     throw UsageError(fmt::format("{}:{}: {}", path_, line_number_, what));
   }
   std::string expected() const {
-    std::string text =
-        fmt::format("{}", fmt::join(names_.begin(), names_.begin() + static_cast<long>(required_), ","));
-    if (required_ < names_.size())
-      text +=
-          fmt::format("[,{}]", fmt::join(names_.begin() + static_cast<long>(required_), names_.end(), ","));
+    std::string text = fmt::format("{}", fmt::join(columns_.required, ","));
+    for (const std::vector<std::string>& group : columns_.groups)
+      text += fmt::format("[,{}]", fmt::join(group, ","));
     return text;
   }
 
@@ -86,10 +92,34 @@ class CsvReader {
         fail(fmt::format("column {} appears twice", *found));
       order_.push_back(column);
     }
-    for (std::size_t column = 0; column < names_.size(); ++column)
-      if (!std::count(order_.begin(), order_.end(), column) &&
-          (column < required_ || order_.size() > required_))
-        fail(fmt::format("column {} is missing; expected {}", names_[column], expected()));
+    place_ = order_;
+    require(0, columns_.required.size());
+  }
+
+  bool has(std::size_t column) const { return std::count(order_.begin(), order_.end(), column) > 0; }
+  void require(std::size_t first, std::size_t count) const {
+    for (std::size_t column = first; column < first + count; ++column)
+      if (!has(column)) fail(fmt::format("column {} is missing; expected {}", names_[column], expected()));
+  }
+
+  /// Moves the columns of each group that is there to where the table has them.
+  std::vector<std::optional<std::size_t>> place_groups() {
+    std::vector<std::optional<std::size_t>> groups;
+    std::size_t named = columns_.required.size(), placed = named;  // columns of the groups before
+    for (const std::vector<std::string>& group : columns_.groups) {
+      const std::size_t first = named;
+      named += group.size();
+      groups.emplace_back();
+      bool any = false;
+      for (std::size_t column = first; column < named; ++column) any |= has(column);
+      if (!any) continue;
+      require(first, group.size());
+      for (std::size_t& column : place_)
+        if (column >= first && column < named) column -= first - placed;
+      groups.back() = placed;
+      placed += group.size();
+    }
+    return groups;
   }
 
   void read_row(std::string_view line, std::vector<double>* values) const {
@@ -104,22 +134,23 @@ class CsvReader {
       const auto [stop, error] = std::from_chars(cells[n].data(), end, value);
       if (error != std::errc() || stop != end)
         fail(fmt::format("column {}: \"{}\" is not a number", names_[order_[n]], cells[n]));
-      (*values)[first + order_[n]] = value;
+      (*values)[first + place_[n]] = value;
     }
   }
 
   const std::string& path_;
-  const std::vector<std::string>& names_;
-  const std::size_t required_;
+  const TableColumns& columns_;
+  const std::vector<std::string> names_;
   std::ifstream stream_;
   std::size_t line_number_ = 0;
-  std::vector<std::size_t> order_;  // which of `names_` each column of the file is
+  std::vector<std::size_t> order_,
+      place_;  // which of `names_` each column of the file is, and where in the table
 };
 
 }  // namespace
 
-Table read_csv(const std::string& path, const std::vector<std::string>& names, std::size_t required) {
-  return CsvReader(path, names, required).read();
+Table read_csv(const std::string& path, const TableColumns& columns) {
+  return CsvReader(path, columns).read();
 }
 
 }  // namespace mica::host

@@ -10,22 +10,49 @@
 namespace mica::host {
 namespace {
 
-const std::vector<std::string> kColumns = {"u", "v", "cuu", "cuv", "cvv", "s", "t", "roughness"};
+enum Group { kRoughness, kLobe, kTurn };
+const TableColumns kColumns = {{"u", "v", "cuu", "cuv", "cvv", "s", "t"},
+                               {{"roughness"}, {"rss", "rst", "rtt"}, {"su", "sv", "tu", "tv"}},
+                               {{}, {kRoughness}, {kLobe, kTurn}}};
 constexpr std::size_t kMaxNamed = 10;  // rows that an error names
+
+/// Columns of an array with the groups of a form.
+std::vector<std::string> names_of(const TableColumns& columns, const std::vector<std::size_t>& form) {
+  std::vector<std::string> names = columns.required;
+  for (const std::size_t group : form)
+    names.insert(names.end(), columns.groups[group].begin(), columns.groups[group].end());
+  return names;
+}
+
+/// Tells the groups of an array by its number of columns.
+void place_groups(const std::string& path, const TableColumns& columns, Table* table) {
+  std::string expected;
+  for (const std::vector<std::size_t>& form : columns.forms) {
+    const std::vector<std::string> names = names_of(columns, form);
+    expected += fmt::format("\n  {}: {}", names.size(), fmt::join(names, " "));
+    if (names.size() != table->columns) continue;
+    table->groups.assign(columns.groups.size(), std::nullopt);
+    std::size_t first = columns.required.size();
+    for (const std::size_t group : form) table->groups[group] = first, first += columns.groups[group].size();
+    return;
+  }
+  throw UsageError(fmt::format("{}: {} columns; expected one of{}", path, table->columns, expected));
+}
 
 }  // namespace
 
-Table read_query_table(const std::string& path, const std::vector<std::string>& columns) {
-  const std::size_t required = columns.size() - 1;
+Table read_query_table(const std::string& path, const TableColumns& columns) {
   const std::string extension = std::filesystem::path(path).extension().string();
-  if (extension == ".csv") return read_csv(path, columns, required);
+  if (extension == ".csv") return read_csv(path, columns);
   if (extension != ".npy") throw UsageError(fmt::format("{}: expected a .npy or .csv file of queries", path));
   Table table = read_npy(path);
-  if (table.columns != required && table.columns != columns.size())
-    throw UsageError(fmt::format("{}: {} columns; expected {} or {}: {} and, if it differs by row, {}", path,
-                                 table.columns, required, columns.size(),
-                                 fmt::join(columns.begin(), columns.end() - 1, " "), columns.back()));
+  place_groups(path, columns, &table);
   return table;
+}
+
+Table read_query_table(const std::string& path, const std::vector<std::string>& columns) {
+  const TableColumns table_columns = {{columns.begin(), columns.end() - 1}, {{columns.back()}}, {{}, {0}}};
+  return read_query_table(path, table_columns);
 }
 
 void check_rows(const std::string& path, std::size_t count,
@@ -45,7 +72,10 @@ void check_rows(const std::string& path, std::size_t count,
 
 QueryTable::QueryTable(const std::string& path, std::optional<double> roughness, const std::string& option)
     : path_(path), table_(read_query_table(path, kColumns)) {
-  if (table_.columns == kColumns.size()) return;
+  if (table_.groups[kRoughness] && table_.groups[kLobe])
+    throw UsageError(
+        fmt::format("{}: has both roughness and rss, rst, rtt; one of them says what the lobe is", path));
+  if (table_.groups[kRoughness] || table_.groups[kLobe]) return;
   if (!roughness) throw UsageError(fmt::format("{}: has no column roughness, so {} is needed", path, option));
   roughness_ = *roughness;
 }
@@ -55,7 +85,15 @@ Query QueryTable::query(std::size_t row) const {
   query.footprint.mean_uv = {table_.at(row, 0), table_.at(row, 1)};
   query.footprint.cov_uv << table_.at(row, 2), table_.at(row, 3), table_.at(row, 3), table_.at(row, 4);
   query.half_vector = {table_.at(row, 5), table_.at(row, 6)};
-  query.roughness = table_.columns == kColumns.size() ? table_.at(row, 7) : roughness_;
+  query.roughness = table_.groups[kRoughness] ? table_.at(row, *table_.groups[kRoughness]) : roughness_;
+  if (const std::optional<std::size_t> lobe = table_.groups[kLobe]) {
+    query.lobe_cov.emplace();
+    *query.lobe_cov << table_.at(row, *lobe), table_.at(row, *lobe + 1), table_.at(row, *lobe + 1),
+        table_.at(row, *lobe + 2);
+  }
+  if (const std::optional<std::size_t> turn = table_.groups[kTurn])
+    query.half_vector_turn << table_.at(row, *turn), table_.at(row, *turn + 1), table_.at(row, *turn + 2),
+        table_.at(row, *turn + 3);
   return query;
 }
 

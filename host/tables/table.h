@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,8 +11,18 @@ namespace mica::host {
 struct Table {
   std::size_t rows = 0, columns = 0;
   std::vector<double> values;  ///< rows * columns, row by row
+  std::vector<std::optional<std::size_t>> groups =
+      {};  ///< first column of each of TableColumns' groups, if any
 
   double at(std::size_t row, std::size_t column) const { return values[row * columns + column]; }
+};
+
+/// The columns that a table may have: some always, and after them groups that come whole or not at all.
+struct TableColumns {
+  std::vector<std::string> required;
+  std::vector<std::vector<std::string>> groups;
+  std::vector<std::vector<std::size_t>>
+      forms;  ///< groups of arrays without names, told by how many columns they have
 };
 
 /// A two-dimensional array of float32 or float64, little endian, C or Fortran order, of a NumPy file
@@ -25,9 +36,8 @@ std::string to_npy(const std::vector<float>& values, std::size_t columns = 0);
 
 /// A comma-separated file. Its first line names the columns, in any order; it may begin with `#`, as NumPy
 /// writes it. Empty lines are left out.
-/// @param names the columns that may be there; the table has them in this order.
-/// @param required that many of them, from the first, have to be there; the others come all or not at all.
+/// @param columns those that may be there; the table has them in this order.
 /// Throws FileError when the file cannot be read, UsageError naming the line for everything else.
-Table read_csv(const std::string& path, const std::vector<std::string>& names, std::size_t required);
+Table read_csv(const std::string& path, const TableColumns& columns);
 
 }  // namespace mica::host

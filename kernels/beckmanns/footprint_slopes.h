@@ -13,12 +13,23 @@
 #define MICA_SLOPE_REACH 4.5f
 #endif
 
+// 1: how slopes change with place is summed, too.
+#ifndef MICA_FIRST_ORDER
+#define MICA_FIRST_ORDER 0
+#endif
+
 typedef struct {
   float mean_x, mean_y, xx, xy, yy;
+#if MICA_FIRST_ORDER
+  float x_i, x_j, y_i, y_j;  // covariances of slopes with the cells' places
+#endif
 } slope_lobe;
 
 typedef struct {
   wave_float weight, x, y, xx, xy, yy;
+#if MICA_FIRST_ORDER
+  wave_float i, j, x_i, x_j, y_i, y_j;
+#endif
 } slope_sums;
 
 // Adds the 4x4 cells of which the first is (i, j) of the unrolled level.
@@ -43,13 +54,23 @@ static inline void add_cells(global const mica_slope_footprint* at, global const
   sums->xx = fma(weight, fma(a, a, mean_x * mean_x), sums->xx);
   sums->xy = fma(weight, fma(a, b, mean_x * mean_y), sums->xy);
   sums->yy = fma(weight, fma(b, b, fma(c, c, mean_y * mean_y)), sums->yy);
+#if MICA_FIRST_ORDER
+  const wave_float weighted_x = weight * x, weighted_y = weight * y;
+  sums->i += weighted_x, sums->j += weighted_y;
+  sums->x_i = fma(weighted_x, mean_x, sums->x_i), sums->x_j = fma(weighted_y, mean_x, sums->x_j);
+  sums->y_i = fma(weighted_x, mean_y, sums->y_i), sums->y_j = fma(weighted_y, mean_y, sums->y_j);
+#endif
 }
 
 // Mean and covariance of the slopes under a footprint, without roughness.
 static inline slope_lobe footprint_slopes(global const mica_slope_footprint* at, global const short* pyramid,
                                           WAVE_SHARED int* scratch) {
   const wave_float nothing = 0.0f;
-  slope_sums sums = {nothing, nothing, nothing, nothing, nothing, nothing};
+  slope_sums sums;
+  sums.weight = sums.x = sums.y = sums.xx = sums.xy = sums.yy = nothing;
+#if MICA_FIRST_ORDER
+  sums.i = sums.j = sums.x_i = sums.x_j = sums.y_i = sums.y_j = nothing;
+#endif
   const float reach_x = MICA_SLOPE_REACH * at->sigma_x, reach_y = MICA_SLOPE_REACH * at->sigma_y;
   // Centres of cell n lie at n + 1/2, relative to the mean's whole cell.
   const float mean_x = at->cell_x - 0.5f, mean_y = at->cell_y - 0.5f;
@@ -66,6 +87,13 @@ static inline slope_lobe footprint_slopes(global const mica_slope_footprint* at,
   lobe.xx = fma(-lobe.mean_x, lobe.mean_x, scale * wave_sum(sums.xx, scratch));
   lobe.xy = fma(-lobe.mean_x, lobe.mean_y, scale * wave_sum(sums.xy, scratch));
   lobe.yy = fma(-lobe.mean_y, lobe.mean_y, scale * wave_sum(sums.yy, scratch));
+#if MICA_FIRST_ORDER
+  const float mean_i = scale * wave_sum(sums.i, scratch), mean_j = scale * wave_sum(sums.j, scratch);
+  lobe.x_i = fma(-lobe.mean_x, mean_i, scale * wave_sum(sums.x_i, scratch));
+  lobe.x_j = fma(-lobe.mean_x, mean_j, scale * wave_sum(sums.x_j, scratch));
+  lobe.y_i = fma(-lobe.mean_y, mean_i, scale * wave_sum(sums.y_i, scratch));
+  lobe.y_j = fma(-lobe.mean_y, mean_j, scale * wave_sum(sums.y_j, scratch));
+#endif
   return lobe;
 }
 
@@ -79,13 +107,22 @@ static inline wave_float hermite_weight(wave_int n) {
   return wave_select(inner, outer, wave_mask(n >= 2));
 }
 
+// The Cholesky factor (x 0; y z) of a lobe's covariance. What rounding leaves of a flat one need not be a
+// covariance: |xy| <= sqrt(xx yy) is seen to.
+static inline float3 slope_factor(slope_lobe lobe) {
+  const float x = sqrt(max(lobe.xx, 1e-20f)), reach = sqrt(max(lobe.yy, 0.0f));
+  const float y = min(max(lobe.xy / x, -reach), reach);
+  return (float3)(x, y, sqrt(max(fma(-y, y, lobe.yy), 0.0f)));
+}
+
 // Adds what a roughness on the disk, 1 / inverse_roughness, spreads the lobe's slopes by: the mean of B B^T
 // over them, which is exact for a Gaussian: B B^T is a polynomial of degree six. See lobe.h.
 static inline slope_lobe with_roughness(slope_lobe lobe, float inverse_roughness, WAVE_SHARED int* scratch) {
-  const float a = sqrt(max(lobe.xx, 1e-20f)), b = lobe.xy / a, c = sqrt(max(fma(-b, b, lobe.yy), 0.0f));
+  const float3 factor = slope_factor(lobe);
   const wave_float x = hermite_node(WAVE_LANE & 3), y = hermite_node(WAVE_LANE >> 2);
   const wave_float weight = hermite_weight(WAVE_LANE & 3) * hermite_weight(WAVE_LANE >> 2);
-  const wave_float p_x = fma(a, x, lobe.mean_x), p_y = fma(b, x, fma(c, y, lobe.mean_y));
+  const wave_float p_x = fma(factor.x, x, lobe.mean_x);
+  const wave_float p_y = fma(factor.y, x, fma(factor.z, y, lobe.mean_y));
   const wave_float w = fma(p_x, p_x, fma(p_y, p_y, 1.0f)), k = 1.0f + w;
   const wave_float weighted = weight * w;
   const float variance = 1.0f / (inverse_roughness * inverse_roughness);

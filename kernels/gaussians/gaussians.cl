@@ -26,10 +26,24 @@
 #define MICA_COUNT_ELEMENTS 0
 #endif
 
+// 1: the half vector turns over the footprint, and the lobe need not be round: an element's normal less the
+// half vector has the Jacobian J - H, and everything on the disk is whitened by the lobe.
+#ifndef MICA_FIRST_ORDER
+#define MICA_FIRST_ORDER 0
+#endif
+#if MICA_FIRST_ORDER
+#include "map/turned_lobe.h"
+typedef mica_turned_mixture_query mixture_query;
+#define MIXTURE(query) (&(query)->mixture)
+#else
+typedef mica_mixture_query mixture_query;
+#define MIXTURE(query) (query)
+#endif
+
 // Bits of the children of `node` that reach the cutoff; centres lie half an element inside the children.
-static inline uint surviving_elements(global const mica_mixture_query* query, global const short* node, int i,
+static inline uint surviving_elements(global const mixture_query* query, global const short* node, int i,
                                       int j, int child_size, WAVE_SHARED int* scratch) {
-  global const mica_map_query* place = &query->map;
+  global const mica_map_query* place = &MIXTURE(query)->map;
   oriented_boxes boxes;
   load_boxes(node, 1.0f, &boxes);
   const float to_bound = (float)MICA_BOUND_ONE / MICA_NORMAL_ONE;
@@ -37,17 +51,36 @@ static inline uint surviving_elements(global const mica_mixture_query* query, gl
       wave_to_float(i + (WAVE_LANE & 3) * child_size) - (place->mean_x - 0.5f * ELEMENT_SIZE);
   const wave_float y =
       wave_to_float(j + (WAVE_LANE >> 2) * child_size) - (place->mean_y - 0.5f * ELEMENT_SIZE);
-  const wave_float q_position = footprint_bound(place, x, y, child_size - ELEMENT_SIZE), one = 1.0f;
+  const wave_float q_position = footprint_bound(place, x, y, child_size - ELEMENT_SIZE);
+#if MICA_FIRST_ORDER
+  // The half vector at the middle of a child; how far it turns from there widens the box, and spreads
+  // elements.
+  const float half_size = 0.5f * (child_size - ELEMENT_SIZE);
+  const wave_float middle_x = x + half_size, middle_y = y + half_size;
+  const wave_float h_s =
+      to_bound * place->half_s + MICA_BOUND_ONE * fma(query->turn_sx, middle_x, query->turn_sy * middle_y);
+  const wave_float h_t =
+      to_bound * place->half_t + MICA_BOUND_ONE * fma(query->turn_tx, middle_x, query->turn_ty * middle_y);
+  const float widening = half_size * MICA_BOUND_ONE;
+  widen_boxes(&boxes, widening * (fabs(query->turn_sx) + fabs(query->turn_sy)),
+              widening * (fabs(query->turn_tx) + fabs(query->turn_ty)));
+  const wave_float rough = 1.0f + query->spread_turn;
+  return wave_ballot(reach_cutoff_of(&boxes, h_s, h_t, place->inverse_roughness / MICA_BOUND_ONE,
+                                     query->mixture.spread_variance, rough, q_position, place->cutoff),
+                     scratch);
+#else
+  const wave_float one = 1.0f;
   return wave_ballot(reach_cutoff(&boxes, place->half_s * to_bound, place->half_t * to_bound,
                                   place->inverse_roughness / MICA_BOUND_ONE, query->spread_variance, one,
                                   q_position, place->cutoff),
                      scratch);
+#endif
 }
 
 // Sixteen elements, one of each quad of a leaf. Lengths are times EXP2_SCALE, so that exponents are of 2.
 typedef struct {
-  wave_float p1, p2;                  // centres less the footprint's mean, whitened
-  wave_float e_s, e_t;                // the half vector less s0, in roughnesses
+  wave_float p1, p2;    // centres less the footprint's mean, whitened
+  wave_float e_s, e_t;  // the half vector less s0, in roughnesses or, of a turned lobe, whitened
   wave_float jx_s, jx_t, jy_s, jy_t;  // twice the columns of J a texel, in fixed point
 } element_wave;
 
@@ -71,12 +104,12 @@ static inline void begin_slices(global const mica_mixture_query* query, private 
   const wave_float column = wave_to_float(WAVE_LANE & 3), row = wave_to_float(WAVE_LANE >> 2), zero = 0.0f;
   results->lane_1 = fma(column, results->a1x, row * results->a1y),
   results->lane_2 = fma(column, results->a2x, row * results->a2y);
-  const float pull = query->kernel_variance * query->map.inverse_roughness,
-              to_pull = 0.5f / MICA_NORMAL_ONE * pull;
+  const float inverse_roughness = MICA_FIRST_ORDER ? 1.0f : query->map.inverse_roughness;
+  const float pull = query->kernel_variance * inverse_roughness, to_pull = 0.5f / MICA_NORMAL_ONE * pull;
   results->pull_1x = to_pull * query->axis_1x, results->pull_1y = to_pull * query->axis_1y;
   results->pull_2x = to_pull * query->axis_2x, results->pull_2y = to_pull * query->axis_2y;
   results->blur_1 = query->blur_1 / pull, results->blur_2 = query->blur_2 / pull;
-  results->to_roughness = EXP2_SCALE / MICA_NORMAL_ONE * query->map.inverse_roughness;
+  results->to_roughness = EXP2_SCALE / MICA_NORMAL_ONE * inverse_roughness;
   results->leaves = 0;
   results->loaded.p1 = NOWHERE, results->loaded.p2 = results->loaded.e_s = results->loaded.e_t = zero;
   results->loaded.jx_s = results->loaded.jx_t = results->loaded.jy_s = results->loaded.jy_t = zero;
@@ -110,9 +143,26 @@ static inline void advance(private leaf_results* results, private const element_
   results->loaded = *next;
 }
 
+#if MICA_FIRST_ORDER
+// Whitens sixteen elements, one a texel of a leaf, of which the first has its centre at (x, y).
+static inline void turn_elements(global const mica_turned_lobe* lobe, float x, float y,
+                                 private element_wave* e) {
+  const wave_float column = wave_to_float(WAVE_LANE & 3), row = wave_to_float(WAVE_LANE >> 2);
+  // The half vector less s0 becomes longer with place, by as much as s0 less it becomes shorter.
+  whiten_normals(lobe, -EXP2_SCALE * (x + column), -EXP2_SCALE * (y + row), &e->e_s, &e->e_t);
+  const wave_float zero = 0.0f, twice = 2.0f * MICA_NORMAL_ONE;
+  whiten_normals(lobe, twice, zero, &e->jx_s, &e->jx_t);
+  whiten_normals(lobe, zero, twice, &e->jy_s, &e->jy_t);
+}
+#define TURN_ELEMENTS(query, x, y, next) turn_elements(&(query)->lobe, x, y, next)
+#else
+#define TURN_ELEMENTS(query, x, y, next)
+#endif
+
 // The elements of a leaf whose lower left texel is stored at `at` and lies (i, j) texels from the mean.
-static inline void take_elements(global const mica_mixture_query* query, global const int* normals, int at,
-                                 int i, int j, int room_i, int room_j, private leaf_results* results) {
+static inline void take_elements(global const mixture_query* query, global const int* normals, int at, int i,
+                                 int j, int room_i, int room_j, private leaf_results* results) {
+  global const mica_map_query* place = &MIXTURE(query)->map;
   quad_corners c;
   load_corners(normals, at, &c);
   // The bilinear patch s00 + x f + y g + (xy - x - y) f g. Differences of fixed-point numbers are exact:
@@ -122,9 +172,9 @@ static inline void take_elements(global const mica_mixture_query* query, global 
   const wave_float x_t = wave_to_float(c.t10 - c.t00), y_t = wave_to_float(c.t01 - c.t00),
                    xy_t = wave_to_float(c.t11 - c.t00);
   const float to_roughness = results->to_roughness;
-  const wave_float e_s = to_roughness * wave_to_float(query->map.half_s - c.s00);
-  const wave_float e_t = to_roughness * wave_to_float(query->map.half_t - c.t00);
-  const float x = i - query->map.mean_x, y = j - query->map.mean_y;
+  const wave_float e_s = to_roughness * wave_to_float(place->half_s - c.s00);
+  const wave_float e_t = to_roughness * wave_to_float(place->half_t - c.t00);
+  const float x = i - place->mean_x, y = j - place->mean_y;
   wave_float lane_1 = results->lane_1;
   if (room_i < MICA_LEAF || room_j < MICA_LEAF) {
     const wave_float nowhere = NOWHERE;
@@ -140,6 +190,7 @@ static inline void take_elements(global const mica_mixture_query* query, global 
   next.e_s = fma(-0.25f * to_roughness, x_s + y_s + xy_s, e_s),
   next.e_t = fma(-0.25f * to_roughness, x_t + y_t + xy_t, e_t);
   next.jx_s = xy_s + turn_s, next.jx_t = xy_t + turn_t, next.jy_s = xy_s - turn_s, next.jy_t = xy_t - turn_t;
+  TURN_ELEMENTS(query, x + 0.5f, y + 0.5f, &next);
   advance(results, &next);
 #else
   const wave_float bend_s = xy_s - x_s - y_s, bend_t = xy_t - x_t - y_t;
@@ -153,14 +204,15 @@ static inline void take_elements(global const mica_mixture_query* query, global 
       next.e_t = fma(-to_roughness, fma(jx_t, f, y_t * g), e_t);
       next.jx_s = 2.0f * jx_s, next.jy_s = 2.0f * fma(bend_s, f, y_s);
       next.jx_t = 2.0f * jx_t, next.jy_t = 2.0f * fma(bend_t, f, y_t);
+      TURN_ELEMENTS(query, x + f, y + g, &next);
       advance(results, &next);
     }
   }
 #endif
 }
 
-#define LEAF_QUERY mica_mixture_query
-#define LEAF_PLACE(query) (&(query)->map)
+#define LEAF_QUERY mixture_query
+#define LEAF_PLACE(query) (&MIXTURE(query)->map)
 #define LEAF_NODE_STRIDE MICA_MIXTURE_NODE_STRIDE
 #define LEAF_SURVIVORS surviving_elements
 #define LEAF_TAKE(query, normals, at, i, j, room_i, room_j, sum, scratch) \
@@ -168,21 +220,22 @@ static inline void take_elements(global const mica_mixture_query* query, global 
 #include "map/walk_leaves.h"
 
 // Density of every query, in the order of their slots. Global size: queries (vectors), or 16 a query (items).
-kernel void gaussians(global const mica_mixture_query* restrict queries, int query_count, mica_map_grid grid,
+kernel void gaussians(global const mixture_query* restrict queries, int query_count, mica_map_grid grid,
                       global const int* restrict normals, global const short* restrict block_nodes,
                       global const short* restrict tile_nodes, global float* restrict density) {
   WAVE_DECLARE_SCRATCH(scratch);
   if (WAVE_ITEM_INDEX >= query_count) return;
-  global const mica_mixture_query* query = queries + WAVE_ITEM_INDEX;
+  global const mixture_query* query = queries + WAVE_ITEM_INDEX;
+  global const mica_map_query* place = &MIXTURE(query)->map;
   leaf_results results;
-  begin_slices(query, &results);
+  begin_slices(MIXTURE(query), &results);
   walk_leaves(query, grid, normals, block_nodes, tile_nodes, &results, scratch);
   const element_wave none = results.loaded;
   for (int step = 0; step < 2; ++step) advance(&results, &none);
   const float total = results.leaves > 0 ? wave_sum(results.sum, scratch) : 0.0f;
 #if MICA_COUNT_ELEMENTS
-  density[query->map.slot] = results.leaves * (float)(WAVE_LANES * MICA_ELEMENTS * MICA_ELEMENTS);
+  density[place->slot] = results.leaves * (float)(WAVE_LANES * MICA_ELEMENTS * MICA_ELEMENTS);
 #else
-  density[query->map.slot] = query->map.scale * total;
+  density[place->slot] = place->scale * total;
 #endif
 }

@@ -29,10 +29,9 @@ static inline wave_float weight_y(int k, int side) {
 }
 
 // Normal offsets at the corners of the sub-quads, of the component whose quad corner 00 is at `texel`.
-static inline void subquad_corners(global const int* texel, int half_vector, float inverse_roughness,
+static inline void subquad_corners(global const int* texel, int half_vector, float scale,
                                    private wave_float* c00, private wave_float* c10, private wave_float* c01,
                                    private wave_float* c11) {
-  const float scale = inverse_roughness / MICA_NORMAL_ONE;
   wave_float v00 = 0.0f, v10 = 0.0f, v01 = 0.0f, v11 = 0.0f;
   for (int row = 0; row < 4; ++row) {
     wave_float left = 0.0f, right = 0.0f;
@@ -48,9 +47,10 @@ static inline void subquad_corners(global const int* texel, int half_vector, flo
   *c00 = v00, *c10 = v10, *c01 = v01, *c11 = v11;
 }
 
-// Distance of the half vector from all values that Catmull-Rom can take between the texels `lanes` and their
-// right and upper neighbours: 25/16 is the sum of the absolute weights at the centre, their largest.
-static inline wave_float patch_distance(global const int* texel, int half_vector, float inverse_roughness) {
+// The interval of all values that Catmull-Rom can take between the texels `lanes` and their right and upper
+// neighbours, less the half vector: 25/16 is the sum of the absolute weights at the centre, their largest.
+static inline void patch_interval(global const int* texel, int half_vector, private wave_float* middle,
+                                  private wave_float* half_width) {
   const wave_int first = wave_load_4x4(texel - MICA_BLOCK_ROW - 1, MICA_BLOCK_ROW) - half_vector;
   wave_int low = first, high = first;
   for (int n = 1; n < 16; ++n) {
@@ -58,39 +58,56 @@ static inline wave_float patch_distance(global const int* texel, int half_vector
     const wave_int value = wave_load_4x4(texel + offset, MICA_BLOCK_ROW) - half_vector;
     low = min(low, value), high = max(high, value);
   }
-  const wave_float scale = inverse_roughness / MICA_NORMAL_ONE;
   const wave_float a = wave_to_float(low), b = wave_to_float(high);
-  return scale * max(fabs(0.5f * (a + b)) - 1.5625f * 0.5f * (b - a), 0.0f);
+  *middle = 0.5f * (a + b), *half_width = 1.5625f * 0.5f * (b - a);
+}
+
+// Lower bound of the squared length of the whitened residual in the lanes' quads.
+static inline wave_float patch_bound(global const triangle_query* query, global const int* texel,
+                                     wave_float x, wave_float y, float scale) {
+  global const mica_map_query* place = PLACE(query);
+  wave_float s, t, half_s, half_t;
+  patch_interval(texel, place->half_s, &s, &half_s);
+  patch_interval(texel + MICA_BLOCK_PLANE, place->half_t, &t, &half_t);
+  const wave_float rest = footprint_bound(place, x, y, 1.0f);
+#if MICA_FIRST_ORDER
+  return rest + lobe_bound(&query->lobe, scale * s, scale * t, scale * half_s, scale * half_t, x, y, 1.0f);
+#else
+  const wave_float d_s = scale * max(fabs(s) - half_s, 0.0f), d_t = scale * max(fabs(t) - half_t, 0.0f);
+  return fma(d_s, d_s, fma(d_t, d_t, rest));
+#endif
 }
 
 // As its namesake in texel_quads.h.
-static inline void take_leaf(global const mica_map_query* query, global const int* normals, int at, int i,
+static inline void take_leaf(global const triangle_query* query, global const int* normals, int at, int i,
                              int j, int room_i, int room_j, private wave_list* list, private integrator* out,
                              WAVE_SHARED int* scratch) {
+  global const mica_map_query* place = PLACE(query);
+#if MICA_FIRST_ORDER
+  const float scale = 1.0f / MICA_NORMAL_ONE;
+#else
+  const float scale = place->inverse_roughness / MICA_NORMAL_ONE;
+#endif
   global const int* texel = normals + at;
   const wave_int inside_map = wave_mask((WAVE_LANE & 3) < room_i) & wave_mask((WAVE_LANE >> 2) < room_j);
-  const wave_float d_s = patch_distance(texel, query->half_s, query->inverse_roughness);
-  const wave_float d_t = patch_distance(texel + MICA_BLOCK_PLANE, query->half_t, query->inverse_roughness);
-  const wave_float x = wave_to_float(i + (WAVE_LANE & 3)) - query->mean_x;
-  const wave_float y = wave_to_float(j + (WAVE_LANE >> 2)) - query->mean_y;
-  const wave_float bound = fma(d_s, d_s, fma(d_t, d_t, footprint_bound(query, x, y, 1.0f)));
-  uint patches = wave_ballot(wave_mask(bound <= query->cutoff) & inside_map, scratch);
+  const wave_float x = wave_to_float(i + (WAVE_LANE & 3)) - place->mean_x;
+  const wave_float y = wave_to_float(j + (WAVE_LANE >> 2)) - place->mean_y;
+  const wave_float bound = patch_bound(query, texel, x, y, scale);
+  uint patches = wave_ballot(wave_mask(bound <= place->cutoff) & inside_map, scratch);
   for (; patches; patches &= patches - 1) {
     const int patch = lowest_bit(patches), patch_i = patch & 3, patch_j = patch >> 2;
     global const int* corner = texel + patch_j * MICA_BLOCK_ROW + patch_i;
     quads q;
-    q.x = fma(0.25f, wave_to_float(WAVE_LANE & 3), (float)(i + patch_i) - query->mean_x);
-    q.y = fma(0.25f, wave_to_float(WAVE_LANE >> 2), (float)(j + patch_j) - query->mean_y);
-    subquad_corners(corner, query->half_s, query->inverse_roughness, &q.s00, &q.s10, &q.s01, &q.s11);
-    subquad_corners(corner + MICA_BLOCK_PLANE, query->half_t, query->inverse_roughness, &q.t00, &q.t10,
-                    &q.t01, &q.t11);
-    const wave_float b_s =
-        max(max(min(min(q.s00, q.s10), min(q.s01, q.s11)), -max(max(q.s00, q.s10), max(q.s01, q.s11))), 0.0f);
-    const wave_float b_t =
-        max(max(min(min(q.t00, q.t10), min(q.t01, q.t11)), -max(max(q.t00, q.t10), max(q.t01, q.t11))), 0.0f);
-    const wave_float box = fma(b_s, b_s, fma(b_t, b_t, footprint_bound(query, q.x, q.y, QUAD_SIZE)));
-    const uint bits = wave_ballot(wave_mask(box <= query->cutoff), scratch);
-    if (bits) take_quads(query, &q, bits, list, out, scratch);
+    q.x = fma(0.25f, wave_to_float(WAVE_LANE & 3), (float)(i + patch_i) - place->mean_x);
+    q.y = fma(0.25f, wave_to_float(WAVE_LANE >> 2), (float)(j + patch_j) - place->mean_y);
+    subquad_corners(corner, place->half_s, scale, &q.s00, &q.s10, &q.s01, &q.s11);
+    subquad_corners(corner + MICA_BLOCK_PLANE, place->half_t, scale, &q.t00, &q.t10, &q.t01, &q.t11);
+#if MICA_FIRST_ORDER
+    whiten_quads(query, &q);
+#endif
+    const wave_float box = quads_bound(place, &q);
+    const uint bits = wave_ballot(wave_mask(box <= place->cutoff), scratch);
+    if (bits) take_quads(place, &q, bits, list, out, scratch);
   }
 }
 

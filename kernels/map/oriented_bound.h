@@ -30,12 +30,20 @@ static inline wave_float outside(wave_float value, wave_float low, wave_float hi
   return max(max(low - value, value - high), 0.0f);
 }
 
+// Makes room for means that move by (x, y) at most.
+static inline void widen_boxes(private oriented_boxes* boxes, float x, float y) {
+  const wave_float along = fma(fabs(boxes->axis_x), x, fabs(boxes->axis_y) * y);
+  const wave_float across = fma(fabs(boxes->axis_x), y, fabs(boxes->axis_y) * x);
+  boxes->along_min -= along, boxes->along_max += along;
+  boxes->across_min -= across, boxes->across_max += across;
+}
+
 // Lanes whose elements may reach the cutoff at the normal or slope (x, y): q_position + d_1^2 / v_1 + d_2^2 /
 // v_2 <= cutoff without the divisions, d the distance from the box in roughnesses, v the variance there in
 // roughnesses squared: `rough`, and spread_variance times the square of the spread.
-static inline wave_int reach_cutoff(const private oriented_boxes* boxes, float x, float y,
-                                    float inverse_roughness, float spread_variance, wave_float rough,
-                                    wave_float q_position, float cutoff) {
+static inline wave_int reach_cutoff_of(const private oriented_boxes* boxes, wave_float x, wave_float y,
+                                       float inverse_roughness, float spread_variance, wave_float rough,
+                                       wave_float q_position, float cutoff) {
   const wave_float along = fma(boxes->axis_x, x, boxes->axis_y * y);
   const wave_float across = fma(boxes->axis_x, y, -(boxes->axis_y * x));
   const wave_float d_1 = inverse_roughness * outside(along, boxes->along_min, boxes->along_max);
@@ -44,6 +52,15 @@ static inline wave_int reach_cutoff(const private oriented_boxes* boxes, float x
   const wave_float v_2 = fma(spread_variance * boxes->spread_across, boxes->spread_across, rough);
   return wave_mask(fma(d_1 * d_1, v_2, d_2 * d_2 * v_1) <= (cutoff - q_position) * v_1 * v_2) &
          boxes->present;
+}
+
+// The same of one normal or slope for all lanes.
+static inline wave_int reach_cutoff(const private oriented_boxes* boxes, float x, float y,
+                                    float inverse_roughness, float spread_variance, wave_float rough,
+                                    wave_float q_position, float cutoff) {
+  const wave_float same_x = x, same_y = y;
+  return reach_cutoff_of(boxes, same_x, same_y, inverse_roughness, spread_variance, rough, q_position,
+                         cutoff);
 }
 
 #endif  // MICA_ORIENTED_BOUND_H

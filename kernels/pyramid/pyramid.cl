@@ -21,9 +21,10 @@ typedef struct {
 } record_results;
 
 // The sixteen elements of a record; without the query's scale.
-static inline void take_record(global const mica_pyramid_query* query, global const short* record,
+static inline void take_record(global const pyramid_query* query, global const short* record,
                                group_place place, private record_results* results) {
-  const element_lobes e = slice_record(query, query->map.half_s, query->map.half_t, record, place);
+  global const mica_map_query* map = &PYRAMID(query)->map;
+  const element_lobes e = slice_record(query, map->half_s, map->half_t, record, place);
   const wave_float form = fma(e.r_s, fma(e.n_tt, e.r_s, -2.0f * e.n_st * e.r_t), e.n_ss * e.r_t * e.r_t);
   const wave_float q = fma(form * e.root, e.root, e.q_position);
   results->sum += e.weight * gaussian_exp2(max((-EXP2_SCALE * EXP2_SCALE) * q, -126.0f));
@@ -34,18 +35,19 @@ static inline void take_record(global const mica_pyramid_query* query, global co
 #include "pyramid/walk_records.h"
 
 // Density of every query, in the order of their slots. Global size: queries (vectors), or 16 a query (items).
-kernel void pyramid(global const mica_pyramid_query* restrict queries, int query_count, mica_map_grid level,
+kernel void pyramid(global const pyramid_query* restrict queries, int query_count, mica_map_grid level,
                     global const int* restrict groups, global const short* restrict top_nodes,
                     global const short* restrict nodes, global const short* restrict records,
                     global float* restrict density) {
   WAVE_DECLARE_SCRATCH(scratch);
   if (WAVE_ITEM_INDEX >= query_count) return;
-  global const mica_pyramid_query* query = queries + WAVE_ITEM_INDEX;
+  global const pyramid_query* query = queries + WAVE_ITEM_INDEX;
+  global const mica_map_query* map = &PYRAMID(query)->map;
   const float to_bound = (float)MICA_BOUND_ONE / MICA_NORMAL_ONE;
-  const float h_s = query->map.half_s * to_bound, h_t = query->map.half_t * to_bound;
+  const float h_s = map->half_s * to_bound, h_t = map->half_t * to_bound;
   const half_vector_box half_vector = {h_s, h_s, h_t, h_t};
   record_results results = {0.0f, 0};
   walk_records(query, half_vector, level, groups, top_nodes, nodes, records, &results, scratch);
   const float total = wave_sum(results.sum, scratch);
-  density[query->map.slot] = MICA_COUNT_ELEMENTS ? (float)results.count : query->map.scale * total;
+  density[map->slot] = MICA_COUNT_ELEMENTS ? (float)results.count : map->scale * total;
 }

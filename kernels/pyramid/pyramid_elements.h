@@ -21,6 +21,19 @@
   wave_to_float(wave_load_char((global const char*)((record) + MICA_RECORD_FIELDS_8 + 8 * (field))))
 #endif
 
+// 1: the half vector turns over the footprint, and the lobe need not be round.
+#ifndef MICA_FIRST_ORDER
+#define MICA_FIRST_ORDER 0
+#endif
+#if MICA_FIRST_ORDER
+#include "map/turned_lobe.h"
+typedef mica_turned_pyramid_query pyramid_query;
+#define PYRAMID(query) (&(query)->pyramid)
+#else
+typedef mica_pyramid_query pyramid_query;
+#define PYRAMID(query) (query)
+#endif
+
 // Where a group lies: its corner less the footprint's mean, texels.
 typedef struct {
   float x, y;
@@ -38,10 +51,10 @@ static inline int node_word(global const short* node, int word) {
 
 // Bits of the children of `node` that reach the cutoff. An element's exponent is at least that of its
 // position plus that of its normal, each with the variance that its bound tells added.
-static inline uint surviving_records(global const mica_pyramid_query* query, half_vector_box half_vectors,
+static inline uint surviving_records(global const pyramid_query* query, half_vector_box half_vectors,
                                      global const short* node, group_place place, float position_unit,
                                      WAVE_SHARED int* scratch) {
-  global const mica_map_query* map = &query->map;
+  global const mica_map_query* map = &PYRAMID(query)->map;
   const wave_float x = fma(wave_to_float(wave_load_short(node)), position_unit, place.x);
   const wave_float y = fma(wave_to_float(wave_load_short(node + 32)), position_unit, place.y);
   const wave_float half_width = wave_to_float(wave_load_short(node + 16));
@@ -57,14 +70,36 @@ static inline uint surviving_records(global const mica_pyramid_query* query, hal
                    s_max = wave_to_float(wave_load_short(node + 80));
   const wave_float t_min = wave_to_float(wave_load_short(node + 96)),
                    t_max = wave_to_float(wave_load_short(node + 112));
-  const wave_float d_s = max(max(s_min - half_vectors.s_high, half_vectors.s_low - s_max), 0.0f);
-  const wave_float d_t = max(max(t_min - half_vectors.t_high, half_vectors.t_low - t_max), 0.0f);
+#if MICA_FIRST_ORDER
+  // Normals less what the half vector has turned by at the middle of a box, and by how much more it turns
+  // inside.
+  const wave_float turned_s = MICA_BOUND_ONE * fma(query->turn_sx, x, query->turn_sy * y);
+  const wave_float turned_t = MICA_BOUND_ONE * fma(query->turn_tx, x, query->turn_ty * y);
+  const float more = MICA_BOUND_ONE * position_unit;
+  const wave_float more_s = more * fma(fabs(query->turn_sx), half_width, fabs(query->turn_sy) * half_height);
+  const wave_float more_t = more * fma(fabs(query->turn_tx), half_width, fabs(query->turn_ty) * half_height);
+  const wave_float low_s = s_min - turned_s - more_s, high_s = s_max - turned_s + more_s;
+  const wave_float low_t = t_min - turned_t - more_t, high_t = t_max - turned_t + more_t;
+#else
+  const wave_float low_s = s_min, high_s = s_max, low_t = t_min, high_t = t_max;
+#endif
+  const wave_float d_s = max(max(low_s - half_vectors.s_high, half_vectors.s_low - high_s), 0.0f);
+  const wave_float d_t = max(max(low_t - half_vectors.t_high, half_vectors.t_low - high_t), 0.0f);
 
   const float k = map->inverse_roughness;
-  const float unit_p = query->inverse_minor_variance * as_float(node_word(node, MICA_PYRAMID_NODE_UNIT_P));
+  const float node_unit_p = as_float(node_word(node, MICA_PYRAMID_NODE_UNIT_P));
+  const float unit_p = PYRAMID(query)->inverse_minor_variance * node_unit_p;
   const float unit_n = k * k * as_float(node_word(node, MICA_PYRAMID_NODE_UNIT_N));
+#if MICA_FIRST_ORDER
+  // The bound diag(p, n) of an element's covariance becomes one of 2 p and of n + 2 p H H'.
+  const wave_float node_p = wave_to_float(wave_load_short(node + 128));
+  const wave_float variance_p = fma(node_p, 2.0f * unit_p, 1.0f);
+  const wave_float variance_n = fma(wave_to_float(wave_load_short(node + 144)), unit_n,
+                                    fma(node_p, node_unit_p * query->spread_turn, 1.0f));
+#else
   const wave_float variance_p = fma(wave_to_float(wave_load_short(node + 128)), unit_p, 1.0f);
   const wave_float variance_n = fma(wave_to_float(wave_load_short(node + 144)), unit_n, 1.0f);
+#endif
   // q_p / variance_p + q_n / variance_n <= cutoff, without the divisions.
   const wave_float q_p = fma(d1, d1, d2 * d2);
   const wave_float q_n = (k * k / ((float)MICA_BOUND_ONE * MICA_BOUND_ONE)) * fma(d_s, d_s, d_t * d_t);
@@ -82,6 +117,9 @@ typedef struct {
   wave_float root;  // 1 / sqrt(det n)
 } element_lobes;
 
+#if MICA_FIRST_ORDER
+#include "pyramid/turned_elements.h"
+#else
 // `half_s`, `half_t`: fixed point.
 static inline element_lobes slice_record(global const mica_pyramid_query* query, int half_s, int half_t,
                                          global const short* record, group_place place) {
@@ -132,6 +170,7 @@ static inline element_lobes slice_record(global const mica_pyramid_query* query,
       ELEMENT_FIELD(record, MICA_ELEMENT_WEIGHT) * header[MICA_RECORD_WEIGHT_UNIT] * root_p * lobes.root;
   return lobes;
 }
+#endif
 
 static inline int group_of(int i, int size, int groups, int group_size) {
   const int period = floor_divide(i, size);

@@ -74,7 +74,19 @@ typedef struct {
   MICA_INT group_size;                // texels a side of a group of the level that it reads
 } mica_pyramid_query;
 
+// The same with a turned lobe; the map's inverse_roughness is that of the lobe's major axis, for culling.
+typedef struct {
+  mica_pyramid_query pyramid;
+  mica_turned_lobe lobe;
+  MICA_FLOAT turn_sx, turn_sy;  // of the half vector a texel, on the disk
+  MICA_FLOAT turn_tx, turn_ty;
+  MICA_FLOAT spread_turn;  // what an element's variance of position adds to that of its normal, at most: in
+                           // squares of the lobe's major axis a texel^2
+} mica_turned_pyramid_query;
+
 #ifdef __cplusplus
+static_assert(sizeof(mica_turned_pyramid_query) == 136 &&
+              offsetof(mica_turned_pyramid_query, spread_turn) == 132);
 static_assert(sizeof(mica_pyramid_query) == 84 && offsetof(mica_pyramid_query, group_size) == 80);
 }  // namespace mica::host::device_types
 #endif

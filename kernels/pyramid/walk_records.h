@@ -7,12 +7,12 @@
 #include "pyramid/pyramid_elements.h"
 
 // `level`: the map, and in place of blocks the groups of the level.
-static inline void walk_records(global const mica_pyramid_query* query, half_vector_box half_vectors,
+static inline void walk_records(global const pyramid_query* query, half_vector_box half_vectors,
                                 mica_map_grid level, global const int* groups, global const short* top_nodes,
                                 global const short* nodes, global const short* records,
                                 private record_results* results, WAVE_SHARED int* scratch) {
-  global const mica_map_query* map = &query->map;
-  const int group_size = query->group_size;
+  global const mica_map_query* map = &PYRAMID(query)->map;
+  const int group_size = PYRAMID(query)->group_size;
   const float position_unit = (float)group_size / MICA_BOUND_ONE;
   // Elements lie up to their pieces' size beyond their group: that is in the extent.
   const float reach_x = map->extent_x, reach_y = map->extent_y;

@@ -15,14 +15,52 @@
 #define MICA_INTERPOLATION 1
 #endif
 
+// 1: the half vector turns over the footprint, and the lobe need not be round.
+#ifndef MICA_FIRST_ORDER
+#define MICA_FIRST_ORDER 0
+#endif
+#if MICA_FIRST_ORDER
+#include "map/turned_lobe.h"
+typedef mica_turned_query triangle_query;
+#define PLACE(query) (&(query)->map)
+#define LEAF_SURVIVORS turned_children
+#else
+typedef mica_map_query triangle_query;
+#define PLACE(query) (query)
+#define LEAF_SURVIVORS surviving_children
+#endif
+
 // Sixteen quads: lower left corner in texels from the mean; normals less the half vector, in standard
-// deviations of roughness, at the corners 00, 10, 01, 11 (x first).
+// deviations of the lobe, at the corners 00, 10, 01, 11 (x first).
 typedef struct {
   wave_float x, y;
   wave_float s00, s10, s01, s11;
   wave_float t00, t10, t01, t11;
 } quads;
 #define QUAD_SIZE (MICA_INTERPOLATION == 2 ? 0.25f : 1.0f)
+
+#if MICA_FIRST_ORDER || MICA_INTERPOLATION == 2
+// Lower bound of the squared length of the whitened residual on both triangles of each quad.
+static inline wave_float quads_bound(global const mica_map_query* query, private const quads* q) {
+  const wave_float b_s =
+      max(max(min(min(q->s00, q->s10), min(q->s01, q->s11)), -max(max(q->s00, q->s10), max(q->s01, q->s11))),
+          0.0f);
+  const wave_float b_t =
+      max(max(min(min(q->t00, q->t10), min(q->t01, q->t11)), -max(max(q->t00, q->t10), max(q->t01, q->t11))),
+          0.0f);
+  return fma(b_s, b_s, fma(b_t, b_t, footprint_bound(query, q->x, q->y, QUAD_SIZE)));
+}
+#endif
+
+#if MICA_FIRST_ORDER
+// Normals less the half vector become whitened ones.
+static inline void whiten_quads(global const triangle_query* query, private quads* q) {
+  global const mica_turned_lobe* lobe = &query->lobe;
+  const wave_float right = q->x + QUAD_SIZE, upper = q->y + QUAD_SIZE;
+  whiten_normals(lobe, q->x, q->y, &q->s00, &q->t00), whiten_normals(lobe, right, q->y, &q->s10, &q->t10);
+  whiten_normals(lobe, q->x, upper, &q->s01, &q->t01), whiten_normals(lobe, right, upper, &q->s11, &q->t11);
+}
+#endif
 
 // Both triangles of each quad in lanes where `valid` is set; the diagonal runs from 10 to 01.
 static inline void integrate_quads(global const mica_map_query* query, private const quads* q, wave_int valid,
@@ -86,25 +124,26 @@ typedef struct {
 
 #define LEAF_TAKE(query, normals, at, i, j, room_i, room_j, gathered, scratch) \
   take_leaf(query, normals, at, i, j, room_i, room_j, &(gathered)->list, &(gathered)->out, scratch)
-#define LEAF_SURVIVORS surviving_children
-#define LEAF_QUERY mica_map_query
+#define LEAF_QUERY triangle_query
+#define LEAF_PLACE PLACE
 #define LEAF_NODE_STRIDE MICA_NODE_STRIDE
 #include "map/walk_leaves.h"
 
 // Density of every query, in the order of their slots. Global size: queries (vectors), or 16 a query (items).
-kernel void triangles(global const mica_map_query* restrict queries, int query_count, mica_map_grid grid,
+kernel void triangles(global const triangle_query* restrict queries, int query_count, mica_map_grid grid,
                       global const int* restrict normals, global const short* restrict block_nodes,
                       global const short* restrict tile_nodes, global float* restrict density) {
   WAVE_DECLARE_SCRATCH(scratch);
   WAVE_SHARED float short_records[RIGHT_RECORDS], long_records[RIGHT_RECORDS];
   WAVE_SHARED float quad_records[QUAD_FIELDS * WAVE_LIST];
   if (WAVE_ITEM_INDEX >= query_count) return;
-  global const mica_map_query* query = queries + WAVE_ITEM_INDEX;
+  global const triangle_query* query = queries + WAVE_ITEM_INDEX;
+  global const mica_map_query* place = PLACE(query);
   leaf_results gathered = {{quad_records, 0}, {{0.0f, 0.0f}, {short_records, 0}, {long_records, 0}}};
   walk_leaves(query, grid, normals, block_nodes, tile_nodes, &gathered, scratch);
-  if (gathered.list.count) integrate_first_quads(query, &gathered.list, &gathered.out, scratch);
+  if (gathered.list.count) integrate_first_quads(place, &gathered.list, &gathered.out, scratch);
   integrate_rest(&gathered.out, scratch);
   const float sum = wave_sum(gathered.out.total.sum, scratch);
   const float area = QUAD_SIZE * QUAD_SIZE;  // area of a quad: the integrals are over unit triangles
-  density[query->slot] = MICA_COUNT_FLOPS ? sum : query->scale * area * sum;
+  density[place->slot] = MICA_COUNT_FLOPS ? sum : place->scale * area * sum;
 }

@@ -49,6 +49,27 @@ TEST_F(Eval, DensitiesAreThoseOfTheReference) {
     EXPECT_NEAR(device[n], reference[n], 1e-4 * reference[n] + 1e-6 * peak) << "row " << n;
 }
 
+/// 14 columns: half vectors that turn, and lobes that are not round.
+TEST_F(Eval, DensitiesOfTheFirstOrderAreThoseOfTheReference) {
+  Rows rows = query_rows(100);
+  for (std::vector<double>& row : rows)
+    for (const double value : {1e-4, 3e-5, 4e-5, 0.2, -0.1, 0.15, 0.3}) row.push_back(value);
+  write("q.npy", npy_of(rows));
+  write("q.csv", csv_of(rows, "u,v,cuu,cuv,cvv,s,t,rss,rst,rtt,su,sv,tu,tv"));
+  const std::vector<float> device = eval("q.npy", "--ndf triangles"),
+                           reference = eval("q.npy", "--ndf reference");
+  ASSERT_EQ(device.size(), 100u);
+  ASSERT_EQ(reference.size(), 100u);
+  const float peak = *std::max_element(reference.begin(), reference.end());
+  EXPECT_GT(peak, 100);
+  for (std::size_t n = 0; n < device.size(); ++n)
+    EXPECT_NEAR(device[n], reference[n], 1e-4 * reference[n] + 1e-6 * peak) << "row " << n;
+  EXPECT_EQ(eval("q.csv", "--ndf triangles"), device);
+  const Outcome refused = mica("eval --map map.exr -o E.npy --queries q.npy --ndf beckmanns");
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_NE(refused.err.find("beckmanns takes no turn"), std::string::npos) << refused.err;
+}
+
 TEST_F(Eval, EveryFormOfATableGivesTheSame) {
   const Rows rows = query_rows(100);
   std::vector<double> by_column;

@@ -71,7 +71,8 @@ TEST_F(QueryTables, RefuseShapesBeyondTheFile) {
 
 TEST_F(QueryTables, RefuseOtherArrays) {
   const std::string data(20 * 7 * 8, '\0');
-  expect_refusal("a.npy", npy_bytes("<f8", false, "(28, 5)", data), "usage", "5 columns; expected 7 or 8");
+  expect_refusal("a.npy", npy_bytes("<f8", false, "(28, 5)", data), "usage",
+                 "5 columns; expected one of\n  7: u v cuu cuv cvv s t\n  8: ");
   expect_refusal("a.npy", npy_bytes("<f8", false, "(140,)", data), "usage", "1 dimension");
   expect_refusal("a.npy", npy_bytes("<f8", false, "()", data.substr(0, 8)), "usage", "0 dimensions");
   expect_refusal("a.npy", npy_bytes("|O", false, "(20, 7)", data), "usage",
@@ -137,6 +138,75 @@ TEST_F(QueryTables, HoldWhatTheFileSays) {
   EXPECT_EQ(query.footprint.cov_uv(1, 1), 5);
   EXPECT_EQ(query.half_vector, Eigen::Vector2d(0.6, -0.7));
   EXPECT_EQ(query.roughness, 0.08);
+}
+
+/// Arrays of 14 columns: the lobe's covariance and the half vector's turn.
+TEST_F(QueryTables, HoldTheFirstOrder) {
+  Rows rows = query_rows(2);
+  for (std::vector<double>& row : rows)
+    for (const double value : {4e-4, 1e-4, 9e-4, 1.0, -2.0, 3.0, 0.5}) row.push_back(value);
+  std::ofstream(path("q.npy"), std::ios::binary) << npy_of(rows);
+  const QueryTable table(path("q.npy"), {});
+  const Query query = table.query(1);
+  ASSERT_TRUE(query.lobe_cov);
+  EXPECT_EQ((*query.lobe_cov)(0, 0), 4e-4);
+  EXPECT_EQ((*query.lobe_cov)(0, 1), 1e-4);
+  EXPECT_EQ((*query.lobe_cov)(1, 0), 1e-4);
+  EXPECT_EQ((*query.lobe_cov)(1, 1), 9e-4);
+  EXPECT_EQ(query.half_vector_turn(0, 0), 1);
+  EXPECT_EQ(query.half_vector_turn(0, 1), -2);
+  EXPECT_EQ(query.half_vector_turn(1, 0), 3);
+  EXPECT_EQ(query.half_vector_turn(1, 1), 0.5);
+}
+
+/// A .csv file names its columns, in any order and any of the groups.
+TEST_F(QueryTables, HoldTheGroupsThatTheHeaderNames) {
+  const auto read = [&](const std::string& content) {
+    std::ofstream(path("q.csv")) << content;
+    return QueryTable(path("q.csv"), 0.5).query(0);
+  };
+  const Query turned = read("su,u,v,cuu,cuv,cvv,s,t,tv,tu,sv\n7,1,2,.3,0,5,.6,-.7,10,9,8\n");
+  EXPECT_EQ(turned.roughness, 0.5);
+  EXPECT_FALSE(turned.lobe_cov);
+  EXPECT_EQ(turned.half_vector, Eigen::Vector2d(0.6, -0.7));
+  EXPECT_EQ(turned.half_vector_turn, (Eigen::Matrix2d() << 7, 8, 9, 10).finished());
+  const Query lobe = read("u,v,cuu,cuv,cvv,s,t,rtt,rst,rss\n1,2,.3,0,5,.6,-.7,3,2,4\n");
+  ASSERT_TRUE(lobe.lobe_cov);
+  EXPECT_EQ(*lobe.lobe_cov, (Eigen::Matrix2d() << 4, 2, 2, 3).finished());
+  EXPECT_TRUE(lobe.half_vector_turn.isZero(0));
+  const Query rough = read("u,v,cuu,cuv,cvv,s,t,tv,roughness,tu,su,sv\n1,2,.3,0,5,.6,-.7,10,.04,9,7,8\n");
+  EXPECT_EQ(rough.roughness, 0.04);
+  EXPECT_EQ(rough.half_vector_turn, (Eigen::Matrix2d() << 7, 8, 9, 10).finished());
+}
+
+TEST_F(QueryTables, RefuseHalvesOfTheFirstOrder) {
+  const std::string header = "u,v,cuu,cuv,cvv,s,t";
+  expect_refusal("t.csv", header + ",su,sv,tu\n", "usage", "t.csv:1: column tv is missing");
+  expect_refusal("t.csv", header + ",rss,rtt\n", "usage", "t.csv:1: column rst is missing");
+  expect_refusal("t.csv", header + ",roughness,rss,rst,rtt\n0,0,1,0,1,0,0,.1,1,0,1\n", "usage",
+                 "has both roughness and rss, rst, rtt");
+  expect_refusal("a.npy", npy_bytes("<f8", false, "(10, 14)", std::string(10 * 14 * 8, '\0')), "usage",
+                 "row 0: covariance is not positive definite");
+  expect_refusal("a.npy", npy_bytes("<f8", false, "(14, 10)", std::string(10 * 14 * 8, '\0')), "usage",
+                 "10 columns; expected one of");
+}
+
+TEST_F(QueryTables, NameRowsOfWhichTheFirstOrderIsBad) {
+  const auto expect_row = [&](std::size_t column, double value, const std::string& message) {
+    Rows table = rows(3);
+    for (std::vector<double>& row : table)
+      for (const double good : {1e-4, 0.0, 4e-4, 0.1, 0.0, 0.0, 0.1}) row.push_back(good);
+    EXPECT_EQ(refusal("q.npy", npy_of(table)), "accepted");
+    table[2][column] = value;
+    expect_refusal("q.npy", npy_of(table), "usage", "row 2: " + message);
+  };
+  expect_row(7, std::nan(""), "lobe is not finite");
+  expect_row(7, -1e-4, "lobe is not positive definite");
+  expect_row(8, 1, "lobe is not positive definite");
+  expect_row(7, 1e-12, "lobe of");
+  expect_row(9, 2, "lobe of");
+  expect_row(10, std::numeric_limits<double>::infinity(), "turn of the half vector is not finite");
+  expect_row(12, 1e4, "half vector turns by");
 }
 
 /// More values than are read at once, in both orders.

@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include "host/base/stopwatch.h"
+#include "host/methods/map/first_order.h"
 #include "host/methods/map/map_query.h"
 
 namespace mica::host {
@@ -24,6 +25,12 @@ BeckmannEvaluator::BeckmannEvaluator(Device& device, const Surface& surface, con
 }
 
 std::unique_ptr<PendingDensities> BeckmannEvaluator::start(const std::vector<Query>& queries) {
+  return start_by_order(
+      queries, [this](const std::vector<Query>& some) { return start_plain(some); },
+      refuse_first_order("beckmanns"));
+}
+
+std::unique_ptr<PendingDensities> BeckmannEvaluator::start_plain(const std::vector<Query>& queries) {
   std::vector<device_types::mica_lobe_query> lobe_queries(queries.size());
   tbb::parallel_for(std::size_t{0}, queries.size(), [&](std::size_t n) {
     lobe_queries[n] = to_lobe_query(queries[n], lobe_weights(queries[n].footprint, grid_), grid_, cutoff_);

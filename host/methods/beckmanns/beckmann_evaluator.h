@@ -25,6 +25,8 @@ class BeckmannEvaluator : public Evaluator {
   double device_seconds() const override { return batches_->device_seconds(); }
 
  private:
+  std::unique_ptr<PendingDensities> start_plain(const std::vector<Query>& queries);
+
   LobeGrid grid_;
   double cutoff_, build_seconds_ = 0;
   std::optional<MapBatches<device_types::mica_lobe_query>> batches_;

@@ -30,13 +30,20 @@ class GaussianEvaluator : public Evaluator {
   std::string name() const override { return "gaussians"; }
   std::size_t device_bytes() const override { return batches_->device_bytes(); }
   double build_seconds() const override { return build_seconds_; }
-  double device_seconds() const override { return batches_->device_seconds(); }
+  double device_seconds() const override;
 
  private:
+  std::unique_ptr<PendingDensities> start_plain(const std::vector<Query>& queries);
+  std::unique_ptr<PendingDensities> start_turned(const std::vector<Query>& queries);
+
+  Device& device_;
+  MixtureSettings settings_;
   Interpolation interpolation_;
   int elements_;
   double cutoff_, build_seconds_ = 0;
   std::optional<MapBatches<device_types::mica_mixture_query>> batches_;
+  std::optional<MapBatches<device_types::mica_turned_mixture_query>>
+      turned_;  // compiled for the first of them
 };
 
 }  // namespace mica::host

@@ -7,6 +7,7 @@
 #include <deque>
 
 #include "host/device/launch.h"
+#include "host/methods/map/first_order.h"
 #include "mica/error.h"
 
 namespace mica::host {
@@ -66,7 +67,9 @@ GridEvaluator::GridEvaluator(Device& device, const GlintGrid& grid, std::optiona
 }
 
 std::unique_ptr<PendingDensities> GridEvaluator::start(const std::vector<Query>& queries) {
-  return start_at(queries, {grid_.point()});
+  return start_by_order(
+      queries, [this](const std::vector<Query>& some) { return start_at(some, {grid_.point()}); },
+      refuse_first_order("grid"));
 }
 
 std::unique_ptr<PendingDensities> GridEvaluator::start_at(const std::vector<Query>& queries,

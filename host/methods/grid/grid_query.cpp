@@ -136,6 +136,8 @@ std::string grid_query_problem(const Query& query) {
   if (scale > 1e14) return "covariance is above 1e14";
   if (!query.half_vector.allFinite() || query.half_vector.cwiseAbs().maxCoeff() > 1)
     return "half vector is outside of [-1, 1]^2";
+  if (query.lobe_cov || has_first_order(query))
+    return "grid takes no turn of the half vector and no covariance of the lobe";
   if (outside(query.roughness, 1e-4, 1))
     return fmt::format("roughness {} is outside of 1e-4 to 1", query.roughness);
   return "";

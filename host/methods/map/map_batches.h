@@ -24,6 +24,8 @@ class QueryBatches {
                const std::string& options, WaveForm wave_form, std::size_t batch_queries);
 
   const device_types::mica_map_grid& grid() const { return grid_; }
+  /// The structure on the device: another kernel may share it.
+  const std::vector<cl::Buffer>& structure() const { return structure_; }
   std::size_t device_bytes() const { return device_bytes_; }
   double device_seconds() const { return *device_seconds_; }
 

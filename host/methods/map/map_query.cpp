@@ -8,12 +8,12 @@
 
 #include "host/base/constants.h"
 #include "host/methods/gaussians/mixture.h"
+#include "host/methods/map/periods.h"
+#include "host/methods/map/turned_query.h"
 
 namespace mica::host {
 namespace {
 
-constexpr double kUniformVariance = 0.8 * 0.8;  // of a footprint that sees all of the map alike, periods^2
-constexpr double kMinRoughness = 1e-5, kMaxRoughness = 1;
 constexpr double kMinSigmaTexels = 1e-3, kMaxSigmaTexels = 1e6;
 
 /// a * b - c * d without cancellation. Kahan's algorithm with fused multiply-add.
@@ -26,8 +26,8 @@ std::int32_t to_fixed(double normal) {
   return static_cast<std::int32_t>(std::lround(normal * MICA_NORMAL_ONE));
 }
 
-/// Two integer vectors that span all others, such that `form` of the first is the least of all and that of
-/// the second the least of those it does not divide: Lagrange's reduction.
+}  // namespace
+
 Eigen::Matrix2d reduced_waves(const Eigen::Matrix2d& form) {
   Eigen::Vector2d a(1, 0), b(0, 1);
   for (;;) {
@@ -42,8 +42,6 @@ Eigen::Matrix2d reduced_waves(const Eigen::Matrix2d& form) {
   waves << a, b;
   return waves;
 }
-
-}  // namespace
 
 void wrap_texel(double coordinate, int size, double shift, std::int32_t* whole, float* rest) {
   const double texels = (coordinate - std::floor(coordinate)) * size - shift;
@@ -102,7 +100,7 @@ std::string query_problem(const Query& query, int map_width, int map_height) {
   if (query.half_vector.cwiseAbs().maxCoeff() > 1)
     return fmt::format("half vector ({}, {}) is outside [-1, 1]^2", query.half_vector.x(),
                        query.half_vector.y());
-  if (!(query.roughness >= kMinRoughness && query.roughness <= kMaxRoughness))
+  if (!query.lobe_cov && !(query.roughness >= kMinRoughness && query.roughness <= kMaxRoughness))
     return fmt::format("roughness {} is outside [{}, {}]", query.roughness, kMinRoughness, kMaxRoughness);
   const Eigen::Matrix2d& cov = query.footprint.cov_uv;
   if (!(cov(0, 0) > 0 && cov(1, 1) > 0 &&
@@ -112,7 +110,7 @@ std::string query_problem(const Query& query, int map_width, int map_height) {
   if (!(axes.sigma_minor_texels >= kMinSigmaTexels && axes.sigma_major_texels <= kMaxSigmaTexels))
     return fmt::format("footprint of {:.3g} x {:.3g} texels (standard deviations) is outside [{}, {:g}]",
                        axes.sigma_major_texels, axes.sigma_minor_texels, kMinSigmaTexels, kMaxSigmaTexels);
-  return {};
+  return query.lobe_cov || has_first_order(query) ? first_order_problem(query, map_width, map_height) : "";
 }
 
 device_types::mica_map_query to_map_query(const Query& query, const device_types::mica_map_grid& grid,
@@ -187,8 +185,14 @@ double sum_of_weights(const Eigen::Matrix2d& cov_spacings, const Eigen::Vector2d
 
 device_types::mica_mixture_query to_mixture_query(const Query& query, const device_types::mica_map_grid& grid,
                                                   Interpolation interpolation, int elements, double cutoff) {
+  return to_mixture_query(query, without_needless_periods(query.footprint), grid, interpolation, elements,
+                          cutoff);
+}
+
+device_types::mica_mixture_query to_mixture_query(const Query& query, const Footprint& footprint,
+                                                  const device_types::mica_map_grid& grid,
+                                                  Interpolation interpolation, int elements, double cutoff) {
   device_types::mica_mixture_query result{};
-  const Footprint footprint = without_needless_periods(query.footprint);
   const FootprintAxes axes = footprint_axes(footprint, grid.width, grid.height);
   result.map = to_map_query(query, footprint, axes, grid, interpolation, cutoff);
   const double spacing = 1.0 / elements;

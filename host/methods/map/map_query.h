@@ -57,6 +57,11 @@ device_types::mica_map_query to_triangle_query(const Query& query, const device_
 device_types::mica_mixture_query to_mixture_query(const Query& query, const device_types::mica_map_grid& grid,
                                                   Interpolation interpolation, int elements, double cutoff);
 
+/// The same where the footprint `without_needless_periods` is known.
+device_types::mica_mixture_query to_mixture_query(const Query& query, const Footprint& footprint,
+                                                  const device_types::mica_map_grid& grid,
+                                                  Interpolation interpolation, int elements, double cutoff);
+
 /// Cutoff that leaves out less than `relative_error` of the density's peak.
 double cutoff_for(double relative_error);
 

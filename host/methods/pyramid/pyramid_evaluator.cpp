@@ -9,6 +9,7 @@
 #include "host/base/random.h"
 #include "host/base/stopwatch.h"
 #include "host/methods/gaussians/mixture_evaluator.h"
+#include "host/methods/map/first_order.h"
 #include "host/methods/map/map_query.h"
 #include "host/methods/triangles/triangle_evaluator.h"
 #include "host/surface/texel_footprint.h"
@@ -56,6 +57,38 @@ class PyramidEvaluator::BlendedDensities : public PendingDensities {
   std::vector<Part> parts_;
   std::vector<float> densities_;
 };
+
+std::unique_ptr<PendingDensities> PyramidEvaluator::start(const std::vector<Query>& queries) {
+  return start_by_order(
+      queries, [this](const std::vector<Query>& some) { return start(some, false); },
+      [this](const std::vector<Query>& some) { return start_turned(some); });
+}
+
+/// Levels are chosen by the places that queries see, of which their half vectors pick.
+std::unique_ptr<PendingDensities> PyramidEvaluator::start_turned(const std::vector<Query>& queries) {
+  std::vector<Query> places(queries.size());
+  tbb::parallel_for(std::size_t{0}, queries.size(),
+                    [&](std::size_t n) { places[n] = place_seen(queries[n]); });
+  LevelsOfQueries levels = levels_of(places, false);
+  auto all = std::make_unique<BlendedDensities>(queries.size());
+  for (auto& [choice, share] : levels.by_level) {
+    PyramidLevelBatches& batches = level(choice);
+    const Culling& culled = culling(choice);
+    std::vector<device_types::mica_turned_pyramid_query> sent(share.places.size());
+    tbb::parallel_for(std::size_t{0}, sent.size(), [&, &choice = choice, &share = share](std::size_t n) {
+      sent[n] = to_turned_pyramid_query(queries[share.places[n]], batches.shape(), surface_.interpolation(),
+                                        culled.cutoff, choice.uniform);
+      sent[n].pyramid.map.scale *= static_cast<float>(culled.gain);
+    });
+    all->add(batches.start_turned(std::move(sent)), std::move(share));
+  }
+  if (levels.small.empty()) return all;
+  std::vector<Query> some;
+  for (const std::uint32_t place : levels.small) some.push_back(queries[place]);
+  const std::vector<float> ones(some.size(), 1.0f);
+  all->add(texels(false)->start(some), {std::move(levels.small), ones});
+  return all;
+}
 
 std::unique_ptr<PendingDensities> PyramidEvaluator::start(const std::vector<Query>& queries, bool counting) {
   LevelsOfQueries levels = levels_of(queries, counting);

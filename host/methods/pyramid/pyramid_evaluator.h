@@ -29,9 +29,7 @@ class PyramidEvaluator : public Evaluator {
   /// Builds nothing yet. `device` and `surface` must outlive the evaluator.
   PyramidEvaluator(Device& device, const Surface& surface, const PyramidSettings& settings = {});
 
-  std::unique_ptr<PendingDensities> start(const std::vector<Query>& queries) override {
-    return start(queries, false);
-  }
+  std::unique_ptr<PendingDensities> start(const std::vector<Query>& queries) override;
   std::unique_ptr<Painter> painter(std::size_t count, const QuerySource& footprint,
                                    const ImageWindow& window) override;
   std::string name() const override { return "pyramid"; }
@@ -71,6 +69,7 @@ class PyramidEvaluator : public Evaluator {
   class BlendedDensities;
 
   std::unique_ptr<PendingDensities> start(const std::vector<Query>& queries, bool counting);
+  std::unique_ptr<PendingDensities> start_turned(const std::vector<Query>& queries);
   LevelsOfQueries levels_of(const std::vector<Query>& queries, bool counting);
   void add_levels(double roughness);
   /// Of levels that were added.

@@ -23,6 +23,15 @@ std::unique_ptr<PendingDensities> PyramidLevelBatches::start_count(
   return counting_->start(std::move(queries));
 }
 
+std::unique_ptr<PendingDensities> PyramidLevelBatches::start_turned(
+    std::vector<device_types::mica_turned_pyramid_query> queries) {
+  if (!turned_)
+    turned_.emplace(device_, shape_.grid, buffers_, bytes_, "pyramid/pyramid",
+                    fmt::format("-DMICA_RECORD_BITS={} -DMICA_FIRST_ORDER=1", shape_.record_bits), wave_form_,
+                    batch_queries_);
+  return turned_->start(std::move(queries));
+}
+
 PyramidLevelBatches::Batches PyramidLevelBatches::make_batches(bool count_elements) const {
   return Batches(device_, shape_.grid, buffers_, bytes_, "pyramid/pyramid",
                  fmt::format("-DMICA_RECORD_BITS={} -DMICA_COUNT_ELEMENTS={}", shape_.record_bits,

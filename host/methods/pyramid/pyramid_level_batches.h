@@ -27,11 +27,17 @@ class PyramidLevelBatches {
   /// The same, with the numbers of elements summed in place of densities.
   std::unique_ptr<PendingDensities> start_count(std::vector<device_types::mica_pyramid_query> queries);
 
+  /// The same of queries with a first order.
+  std::unique_ptr<PendingDensities> start_turned(
+      std::vector<device_types::mica_turned_pyramid_query> queries);
+
   const PyramidShape& shape() const { return shape_; }
   /// In the order of the kernels' arguments: groups, top nodes, nodes, records.
   const std::vector<cl::Buffer>& buffers() const { return buffers_; }
   std::size_t device_bytes() const { return batches_.device_bytes(); }
-  double device_seconds() const { return batches_.device_seconds(); }
+  double device_seconds() const {
+    return batches_.device_seconds() + (turned_ ? turned_->device_seconds() : 0);
+  }
 
  private:
   using Batches = MapBatches<device_types::mica_pyramid_query>;
@@ -44,6 +50,7 @@ class PyramidLevelBatches {
   std::vector<cl::Buffer> buffers_;
   Batches batches_;
   std::optional<Batches> counting_;  // on the same buffers
+  std::optional<MapBatches<device_types::mica_turned_pyramid_query>> turned_;
 };
 
 }  // namespace mica::host

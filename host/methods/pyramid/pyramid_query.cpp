@@ -1,10 +1,12 @@
 #include "host/methods/pyramid/pyramid_query.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
 #include "host/base/constants.h"
 #include "host/methods/map/map_query.h"
+#include "host/methods/map/turned_query.h"
 #include "host/methods/pyramid/moment_pyramid.h"
 
 namespace mica::host {
@@ -55,12 +57,14 @@ std::optional<PyramidShares> shares_of(const Query& query, int map_width, int ma
   return shares;
 }
 
-device_types::mica_pyramid_query to_pyramid_query(const Query& query, const PyramidShape& level,
-                                                  Interpolation interpolation, double cutoff, bool uniform) {
+namespace {
+
+device_types::mica_pyramid_query to_pyramid_query(const Query& query, const Footprint& footprint,
+                                                  const PyramidShape& level, Interpolation interpolation,
+                                                  double cutoff, bool uniform) {
   device_types::mica_pyramid_query result{};
   const int width = level.grid.width, height = level.grid.height;
   result.group_size = level.group_size;
-  const Footprint footprint = without_needless_periods(query.footprint);
   const FootprintAxes axes = footprint_axes(footprint, width, height);
   result.map = to_map_query(query, footprint, axes, level.grid, interpolation, cutoff);
   if (uniform) {
@@ -87,6 +91,49 @@ device_types::mica_pyramid_query to_pyramid_query(const Query& query, const Pyra
   result.map.extent_x = static_cast<float>(std::sqrt(cutoff * (cov(0, 0) + spread)));
   result.map.extent_y = static_cast<float>(std::sqrt(cutoff * (cov(1, 1) + spread)));
   result.map.scale = static_cast<float>(1 / (4 * kPi * kPi * query.roughness * query.roughness));
+  return result;
+}
+
+}  // namespace
+
+device_types::mica_pyramid_query to_pyramid_query(const Query& query, const PyramidShape& level,
+                                                  Interpolation interpolation, double cutoff, bool uniform) {
+  return to_pyramid_query(query, without_needless_periods(query.footprint), level, interpolation, cutoff,
+                          uniform);
+}
+
+Query place_seen(const Query& query) {
+  const Eigen::Matrix2d &turn = query.half_vector_turn, lobe = lobe_covariance(query);
+  const Eigen::Matrix2d place =
+      (query.footprint.cov_uv.inverse() + turn.transpose() * lobe.inverse() * turn).inverse();
+  return {{query.footprint.mean_uv, 0.5 * (place + place.transpose())},
+          query.half_vector,
+          lobe_axes(query).sigma[1]};
+}
+
+device_types::mica_turned_pyramid_query to_turned_pyramid_query(const Query& query, const PyramidShape& level,
+                                                                Interpolation interpolation, double cutoff,
+                                                                bool uniform) {
+  Query shorter = without_needless_periods(query);
+  if (uniform) {  // place and half vector part
+    const Eigen::Matrix2d& turn = query.half_vector_turn;
+    shorter.lobe_cov = lobe_covariance(query) + turn * query.footprint.cov_uv * turn.transpose();
+    shorter.half_vector_turn.setZero();
+  }
+  const bool turns = !shorter.half_vector_turn.isZero(0);
+  const Query round = with_round_lobe(shorter);
+  const double major = lobe_axes(shorter).sigma[0];
+  device_types::mica_turned_pyramid_query result{};
+  result.lobe = to_turned_lobe(shorter, level.grid);
+  result.pyramid =
+      to_pyramid_query(round, turns ? round.footprint : without_needless_periods(round.footprint), level,
+                       interpolation, cutoff, uniform);
+  result.pyramid.map.inverse_roughness = static_cast<float>(1 / major);
+  const Eigen::Matrix2d turn = shorter.half_vector_turn *
+                               Eigen::Vector2d(1.0 / level.grid.width, 1.0 / level.grid.height).asDiagonal();
+  result.turn_sx = static_cast<float>(turn(0, 0)), result.turn_sy = static_cast<float>(turn(0, 1));
+  result.turn_tx = static_cast<float>(turn(1, 0)), result.turn_ty = static_cast<float>(turn(1, 1));
+  result.spread_turn = static_cast<float>(2 * (turn * turn.transpose()).trace() / (major * major));
   return result;
 }
 

@@ -56,4 +56,13 @@ std::optional<PyramidShares> shares_of(const Query& query, int map_width, int ma
 device_types::mica_pyramid_query to_pyramid_query(const Query& query, const PyramidShape& level,
                                                   Interpolation interpolation, double cutoff, bool uniform);
 
+/// The place that a query with a first order sees for its half vector, and the roughness of its lobe where
+/// that is narrow: a level that suits them suits the query.
+Query place_seen(const Query& query);
+
+/// The query with its first order in the kernel's form.
+device_types::mica_turned_pyramid_query to_turned_pyramid_query(const Query& query, const PyramidShape& level,
+                                                                Interpolation interpolation, double cutoff,
+                                                                bool uniform);
+
 }  // namespace mica::host

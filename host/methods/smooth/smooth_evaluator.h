@@ -24,13 +24,23 @@ class SmoothEvaluator : public Evaluator {
   std::string name() const override { return "smooth"; }
   std::size_t device_bytes() const override { return batches_->device_bytes(); }
   double build_seconds() const override { return build_seconds_; }
-  double device_seconds() const override { return batches_->device_seconds(); }
+  double device_seconds() const override;
 
  private:
+  std::unique_ptr<PendingDensities> start_plain(const std::vector<Query>& queries);
+  std::unique_ptr<PendingDensities> start_turned(const std::vector<Query>& queries);
+  device_types::mica_smooth_query plain(const Query& query, const Footprint& footprint) const;
+  device_types::mica_turned_smooth_query turned(const Query& query) const;
+
+  Device& device_;
+  WaveForm wave_form_;
+  std::size_t batch_queries_;
   LobeGrid grid_;
   std::vector<SlopeLevel> levels_;
   double build_seconds_ = 0;
   std::optional<MapBatches<device_types::mica_smooth_query>> batches_;
+  std::optional<MapBatches<device_types::mica_turned_smooth_query>>
+      turned_;  // compiled for the first of them
 };
 
 }  // namespace mica::host

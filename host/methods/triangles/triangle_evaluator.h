@@ -23,6 +23,8 @@ struct TriangleSettings {
 };
 
 /// `triangles`: the triangulated map, integrated exactly. [Yan14] Eq. 6; kernels/triangles/triangles.cl.
+/// Normals less a half vector that turns are linear on a triangle, too, and a lobe that is not round is a
+/// linear map of the disk.
 class TriangleEvaluator : public Evaluator {
  public:
   /// Builds the map's structures and uploads them. `device` must outlive the evaluator.
@@ -35,12 +37,18 @@ class TriangleEvaluator : public Evaluator {
   std::string name() const override { return "triangles"; }
   std::size_t device_bytes() const override { return batches_->device_bytes(); }
   double build_seconds() const override { return build_seconds_; }
-  double device_seconds() const override { return batches_->device_seconds(); }
+  double device_seconds() const override;
 
  private:
+  std::unique_ptr<PendingDensities> start_plain(const std::vector<Query>& queries);
+  std::unique_ptr<PendingDensities> start_turned(const std::vector<Query>& queries);
+
+  Device& device_;
+  TriangleSettings settings_;
   Interpolation interpolation_;
   double cutoff_, build_seconds_ = 0;
   std::optional<MapBatches<device_types::mica_map_query>> batches_;
+  std::optional<MapBatches<device_types::mica_turned_query>> turned_;  // compiled for the first of them
 };
 
 }  // namespace mica::host

@@ -1,0 +1,74 @@
+// `pyramid` on queries whose half vector turns over the footprint and whose lobe is not round.
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <cmath>
+#include <cstdio>
+
+#include "host/methods/pyramid/pyramid_evaluator.h"
+#include "host/methods/triangles/triangle_evaluator.h"
+#include "tests/methods/first_order_queries.h"
+
+namespace mica::host {
+namespace {
+
+Device& device() {
+  static Device shared(0);
+  return shared;
+}
+
+/// The method's own error may grow by a fifth where the half vector turns. Footprints of whole levels,
+/// against triangles, which hold 1e-4 against the oracle.
+TEST(PyramidFirstOrder, IsHardlyLessPreciseThanWithout) {
+  for (const FirstOrderSurface& kind : first_order_surfaces()) {
+    if (kind.name != "spectrum_bilinear" && kind.name != "flakes_nearest") continue;
+    const Surface surface = kind.make();
+    PyramidEvaluator evaluator(device(), surface);
+    TriangleEvaluator triangles(device(), surface);
+    const References references = [&](const std::vector<Query>& queries) {
+      const std::vector<float> densities = triangles.evaluate(queries);
+      return std::vector<double>(densities.begin(), densities.end());
+    };
+    for (const double lobe : {0.01, 0.04}) {
+      std::size_t on_levels = 0, count = 0;
+      const auto turned_probes = first_order_probes(surface, lobe, 150, 40, 12, 1, 20);
+      for (const std::vector<Query>& queries : turned_probes)
+        for (const Query& query : queries)
+          ++count, on_levels += evaluator.choose(place_seen(query)).has_value();
+      const double plain =
+          relative_l2(&evaluator, references, without_first_order(surface, lobe, 150, 40, 12, 20));
+      const double turned = relative_l2(&evaluator, references, turned_probes);
+      std::printf("%-18s lobe %5.3f: relative L2 %.4f with a turn, %.4f without; %zu of %zu on levels\n",
+                  kind.name.c_str(), lobe, turned, plain, on_levels, count);
+      EXPECT_LE(turned, 1.2 * plain + 1e-3) << kind.name << ", lobe " << lobe;
+      EXPECT_GT(on_levels, count / 4);
+    }
+  }
+}
+
+TEST(PyramidFirstOrder, OfAFlatMapIsTheLobeWidenedByTheTurn) {
+  const Eigen::Vector2d normal(0.1, -0.05);
+  const Surface surface(96, 70, Interpolation::bilinear, std::vector<Eigen::Vector2d>(96 * 70, normal));
+  PyramidEvaluator evaluator(device(), surface);
+  for (const double sigma : {0.6, 3.0, 10.0, 500.0}) {
+    for (const double lobe : {0.004, 0.02}) {
+      for (const double turns : {0.0, 0.3, 1.0, 4.0}) {
+        for (const double off : {0.0, 1.5, 2.5}) {
+          Query query =
+              turned_query(surface, {0.3, 0.8}, sigma, 0.5 * sigma, 1.1, lobe, 0.25 * lobe, 0.7, turns);
+          const Eigen::Matrix2d wide = lobe_covariance(query) + query.half_vector_turn *
+                                                                    query.footprint.cov_uv *
+                                                                    query.half_vector_turn.transpose();
+          const Eigen::Matrix2d factor = wide.llt().matrixL();
+          query.half_vector = normal + off * (factor * Eigen::Vector2d(0.6, -0.8));
+          const double peak = 1 / (2 * kPi * std::sqrt(wide.determinant()));
+          EXPECT_NEAR(evaluator.evaluate({query})[0] / peak, std::exp(-0.5 * off * off), 0.05)
+              << "footprint " << sigma << ", lobe " << lobe << ", turn of " << turns << " lobes, off " << off;
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace mica::host
