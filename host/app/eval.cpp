@@ -27,7 +27,6 @@ struct EvalOptions {
   MethodOptions method;
   std::string quantity = "ndf", queries, output, json, part = "all";
   std::optional<double> roughness;
-  std::uint64_t seed = 1;
   int device = 0;
 };
 
@@ -71,7 +70,7 @@ QueryTable read_queries(const EvalOptions& options, const MethodSettings& settin
 int run_patches(const EvalOptions& options) {
   if (options.method.tolerance) throw UsageError("--tolerance is for --quantity ndf");
   return evaluate_patches({options.map, options.method, options.quantity, options.queries, options.output,
-                           options.json, options.part, options.roughness, options.seed, options.device});
+                           options.json, options.part, options.roughness, options.device});
 }
 
 int run(const EvalOptions& options) {

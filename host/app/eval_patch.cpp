@@ -6,6 +6,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <charconv>
 #include <nlohmann/json.hpp>
 
 #include "host/app/evaluation.h"
@@ -28,6 +29,16 @@ PatchQuantity to_quantity(const std::string& name) {
 float chosen_part(const std::string& part, float single, float multiple) {
   if (part == "single") return single;
   return part == "multiple" ? multiple : single + multiple;
+}
+
+/// For the draws; the option is a grid's glints' as well.
+std::uint64_t seed_of(const PatchEvaluation& options) {
+  const std::string text = options.method.text("seed", "1");
+  std::uint64_t seed = 0;
+  const auto result = std::from_chars(text.data(), text.data() + text.size(), seed);
+  if (result.ec != std::errc() || result.ptr != text.data() + text.size())
+    throw UsageError(fmt::format("--seed {}: expected a whole number", text));
+  return seed;
 }
 
 /// The answers, row by row, and how many there are in one.
@@ -63,7 +74,7 @@ Answers answer_all(const PatchEvaluation& options, const PatchTable& table, Patc
   const auto sample_rows = [&](std::size_t first, std::size_t count) {
     for (const BrdfSample& sample :
          ask<SampleQuery, BrdfSample>(brdf, &PatchBrdf::sample, first, count,
-                                      [&](std::size_t row) { return table.sample(row, options.seed); }))
+                                      [&](std::size_t row) { return table.sample(row, seed_of(options)); }))
       values.insert(values.end(), {sample.light.x(), sample.light.y(), sample.light.z(), sample.pdf,
                                    chosen_part(part, sample.weight_single, sample.weight_multiple)});
   };
@@ -90,10 +101,22 @@ const std::vector<std::string>& patch_quantities() {
   return names;
 }
 
+namespace {
+
+/// "0.3" as a number, "0.2,0.4" as two.
+nlohmann::json as_number(const std::string& text) {
+  nlohmann::json numbers = nlohmann::json::parse("[" + text + "]", nullptr, false);
+  if (numbers.is_discarded()) return text;
+  return numbers.size() == 1 ? numbers.front() : numbers;
+}
+
+}  // namespace
+
 EvalSubject load_subject(const MapOptions& map, const MethodOptions& method, const MethodSettings& settings) {
   if (!method_of(method).traits().map) {
     nlohmann::json description;
-    for (const SettingEntry& entry : list_settings(settings)) description[entry.key] = entry.value;
+    for (const SettingEntry& entry : list_settings(settings))
+      description[entry.key] = entry.words.empty() ? as_number(entry.value) : nlohmann::json(entry.value);
     return {std::nullopt, description};
   }
   if (map.path.empty()) throw UsageError(fmt::format("--ndf {} needs a --map", method.name));
@@ -147,7 +170,7 @@ int evaluate_patches(const PatchEvaluation& options) {
               {"compensation", options.method.text("compensation", "diffuse")},
               {"energy", options.method.text("energy", "exact")},
               {"part", options.part},
-              {"seed", options.seed},
+              {"seed", seed_of(options)},
               {subject.surface ? "map" : "glints", subject.description},
               {"device", describe_device(device.info())},
               {"device_bytes", brdf->device_bytes()},

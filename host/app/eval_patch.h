@@ -28,7 +28,6 @@ struct PatchEvaluation {
   std::string quantity, queries, output, json;  ///< quantity: one of patch_quantities()
   std::string part = "all";
   std::optional<double> roughness;
-  std::uint64_t seed = 1;
   int device = 0;
 };
 

@@ -13,8 +13,8 @@
   METHOD(gaussians)          \
   METHOD(beckmanns)          \
   METHOD(smooth)             \
-  METHOD(pyramid)            \
   METHOD(cavities)           \
+  METHOD(pyramid)            \
   METHOD(auto)               \
   METHOD(grid)               \
   METHOD(normalmap)          \

@@ -22,8 +22,8 @@ double to_number(const char* key, const std::string& text, const SettingRange& r
   const bool whole_text = result.ec == std::errc() && result.ptr == text.data() + text.size();
   if (!whole_text || !(value >= range.low && value <= range.high) || (range.open_low && value == range.low))
     refuse(key, text,
-           fmt::format("a number {} {} and at most {}", range.open_low ? "above" : "from", range.low,
-                       range.high));
+           range.open_low ? fmt::format("a number above {}, at most {}", range.low, range.high)
+                          : fmt::format("a number from {} to {}", range.low, range.high));
   return value;
 }
 

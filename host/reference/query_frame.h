@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 
 #include "host/base/query.h"
-#include "host/reference/cell_grid.h"
+#include "host/reference/cell_map.h"
 #include "host/surface/surface.h"
 
 namespace mica::host::reference {

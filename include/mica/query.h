@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "mica/span.h"
 #include "mica/version.h"
@@ -71,6 +72,8 @@ struct MICA_API Queries : Footprints {
 
   Queries() = default;
   Queries(Span<const Query> queries);  // NOLINT(google-explicit-constructor)
+  Queries(const std::vector<Query>& queries)
+      : Queries(Span<const Query>(queries)) {}  // NOLINT(google-explicit-constructor)
   /// Rows u v cuu cuv cvv s t [roughness], or u v cuu cuv cvv s t rss rst rtt su sv tu tv.
   /// @param columns 7, 8 or 14. Throws UsageError for another number.
   static Queries of_rows(const double* rows, std::size_t count, int columns, double roughness = 0.01);

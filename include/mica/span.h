@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <type_traits>
 #include <vector>
 
 #include "mica/version.h"
@@ -12,10 +13,10 @@ template <typename T>
 struct Span {
   Span() = default;
   Span(T* first, std::size_t count) : data(first), size(count) {}
-  template <typename U>
+  template <typename U, typename = std::enable_if_t<std::is_convertible_v<U (*)[], T (*)[]>>>
   Span(std::vector<U>& values)
       : data(values.data()), size(values.size()) {}  // NOLINT(google-explicit-constructor)
-  template <typename U>
+  template <typename U, typename = std::enable_if_t<std::is_convertible_v<const U (*)[], T (*)[]>>>
   Span(const std::vector<U>& values)  // NOLINT(google-explicit-constructor)
       : data(values.data()), size(values.size()) {}
 

@@ -20,7 +20,7 @@ TEST(RelativeL2, HasAnAnswerWhereReferencesAreZero) {
   EXPECT_EQ(error.value(), 0);
   error.add(1.0f, 0.0);
   EXPECT_TRUE(std::isinf(error.value()));
-  error.add(0.0f, 2.0);
+  error.add(2.0f, 2.0);
   EXPECT_TRUE(error.has_reference());
   EXPECT_EQ(error.value(), 0.5);
 }

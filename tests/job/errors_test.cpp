@@ -47,8 +47,8 @@ const std::vector<Mistake> kUnknownKeys = {
      "material.gold.specular.kk: found an unknown key; expected \"ior\""},
     {"\"bumps\"", "\"bumps\"\n@\"a b\" = 1",
      "material.gold.\"a b\": found an unknown key; expected one of: repeat, ndf, surface, roughness, "
-     "masking, "
      "elements, "
+     "masking, "
      "specular, "
      "diffuse, coat"},
 };

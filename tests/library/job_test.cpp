@@ -22,7 +22,10 @@ TEST(LibraryJob, RendersToNamedChannels) {
   const Renderer renderer(Device(), job);
   std::size_t rows = 0;
   RunControl control;
-  control.progress = [&](std::size_t done, std::size_t all) { rows = done, EXPECT_EQ(all, 16u); };
+  control.progress = [&](std::size_t done, std::size_t all) {
+    rows = done;
+    EXPECT_EQ(all, 16u);
+  };
   const Image image = renderer.render(control);
   EXPECT_EQ(rows, 16u);
   EXPECT_EQ(image.width * image.height, 24 * 16);

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "host/base/constants.h"
+#include "host/base/random.h"
 #include "host/methods/evaluator.h"
 #include "host/reference/oracle.h"
 #include "host/surface/interpolate.h"
-#include "host/surface/random.h"
 #include "host/surface/synthesis.h"
 #include "host/verify/accuracy.h"
 

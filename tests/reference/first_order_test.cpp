@@ -8,10 +8,10 @@
 #include <limits>
 
 #include "host/base/constants.h"
+#include "host/base/random.h"
 #include "host/reference/binning.h"
 #include "host/reference/oracle.h"
 #include "host/surface/interpolate.h"
-#include "host/surface/random.h"
 #include "mica/error.h"
 
 namespace mica::host::reference {

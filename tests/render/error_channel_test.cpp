@@ -84,7 +84,7 @@ TEST(ErrorChannel, IsRefusedWhereNothingIsKnownOfTheError) {
   } catch (const UsageError& error) {
     EXPECT_STREQ(
         error.what(),
-        "image.aovs: \"error\" wants materials with ndf \"auto\" or \"triangles\"; material metal has "
+        "image.aovs: \"error\" wants materials with ndf \"triangles\" or \"auto\"; material metal has "
         "\"gaussians\"");
   }
 }

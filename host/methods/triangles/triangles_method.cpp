@@ -44,7 +44,7 @@ class TrianglesMethod : public Method {
   void check(const MethodSettings& settings) const override {
     if (settings.tolerance && !(*settings.tolerance >= kTrianglesTolerance))
       throw UsageError(
-          fmt::format("tolerance {}: triangles keeps a relative error of {}; for less use reference",
+          fmt::format("tolerance {}: triangles keeps a relative error of {}; for less use --ndf reference",
                       *settings.tolerance, kTrianglesTolerance));
   }
 

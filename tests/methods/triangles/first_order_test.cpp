@@ -9,8 +9,8 @@
 #include <cstdio>
 
 #include "host/base/constants.h"
+#include "host/base/random.h"
 #include "host/methods/triangles/triangle_evaluator.h"
-#include "host/surface/random.h"
 #include "host/verify/accuracy.h"
 #include "tests/methods/first_order_queries.h"
 
