@@ -13,6 +13,7 @@
 #include "host/reference/oracle.h"
 #include "host/surface/interpolate.h"
 #include "host/surface/synthesis.h"
+#include "host/surface/texel_footprint.h"
 #include "host/verify/accuracy.h"
 
 namespace mica::host {
@@ -82,10 +83,10 @@ inline std::vector<std::vector<Query>> first_order_probes(const Surface& surface
                                                           double smallest_texels = 0.3) {
   std::vector<std::vector<Query>> probes(footprints);
   for (int n = 0; n < footprints; ++n) {
-    const auto random = [&](std::uint64_t stream) { return synthesis::random_unit(17, stream, n); };
+    const auto random = [&](std::uint64_t stream) { return random_unit(17, stream, n); };
     const auto normal = [&](std::uint64_t stream, std::uint64_t k) {
-      return std::sqrt(-2 * std::log(1 - synthesis::random_unit(23, stream, 100 * n + k))) *
-             std::cos(2 * kPi * synthesis::random_unit(23, stream + 1, 100 * n + k));
+      return std::sqrt(-2 * std::log(1 - random_unit(23, stream, 100 * n + k))) *
+             std::cos(2 * kPi * random_unit(23, stream + 1, 100 * n + k));
     };
     const double major = smallest_texels * std::pow(largest_texels / smallest_texels, n / (footprints - 1.0));
     const double aspect = std::pow(4, random(0)), lobe_aspect = std::pow(4, random(1));

@@ -14,7 +14,7 @@
 #include "host/surface/interpolate.h"
 #include "mica/error.h"
 
-namespace mica::host::reference {
+namespace mica::host::reference::first_order_test {
 namespace {
 
 Eigen::Matrix2d covariance(double sigma_major, double sigma_minor, double angle) {
@@ -60,7 +60,7 @@ Surface random_surface(int width, int height, Interpolation interpolation, doubl
                        const Eigen::Matrix2d& slope = Eigen::Matrix2d::Zero()) {
   std::vector<Eigen::Vector2d> normals(static_cast<std::size_t>(width) * height);
   for (std::size_t k = 0; k < normals.size(); ++k) {
-    const auto random = [&](std::uint64_t stream) { return 2 * synthesis::random_unit(1, stream, k) - 1; };
+    const auto random = [&](std::uint64_t stream) { return 2 * random_unit(1, stream, k) - 1; };
     const Eigen::Vector2d centre(static_cast<double>(k % width) + 0.5 - 0.5 * width,
                                  static_cast<double>(k / width) + 0.5 - 0.5 * height);
     normals[k] = Eigen::Vector2d(0.1 + range * random(0), -0.05 + range * random(1)) + slope * centre;
@@ -266,4 +266,4 @@ TEST(OracleFirstOrder, RefusesWhatHasNoAnswer) {
 }
 
 }  // namespace
-}  // namespace mica::host::reference
+}  // namespace mica::host::reference::first_order_test

@@ -8,7 +8,7 @@
 #include "host/methods/gaussians/mixture_evaluator.h"
 #include "tests/methods/first_order_queries.h"
 
-namespace mica::host {
+namespace mica::host::first_order_gaussians_test {
 namespace {
 
 Device& device() {
@@ -67,4 +67,4 @@ TEST(GaussiansFirstOrder, OfAFlatMapIsTheLobeWidenedByTheTurn) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::first_order_gaussians_test

@@ -9,7 +9,7 @@
 #include "host/methods/triangles/triangle_evaluator.h"
 #include "tests/methods/first_order_queries.h"
 
-namespace mica::host {
+namespace mica::host::first_order_pyramid_test {
 namespace {
 
 Device& device() {
@@ -71,4 +71,4 @@ TEST(PyramidFirstOrder, OfAFlatMapIsTheLobeWidenedByTheTurn) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::first_order_pyramid_test

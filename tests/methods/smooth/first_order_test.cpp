@@ -8,7 +8,7 @@
 #include "host/methods/smooth/smooth_evaluator.h"
 #include "tests/methods/first_order_queries.h"
 
-namespace mica::host {
+namespace mica::host::first_order_smooth_test {
 namespace {
 
 Device& device() {
@@ -60,4 +60,4 @@ TEST(SmoothFirstOrder, OfAFlatMapIsTheLobeWidenedByTheTurn) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::first_order_smooth_test

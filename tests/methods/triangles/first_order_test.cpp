@@ -14,7 +14,7 @@
 #include "host/verify/accuracy.h"
 #include "tests/methods/first_order_queries.h"
 
-namespace mica::host {
+namespace mica::host::first_order_triangles_test {
 namespace {
 
 Device& device() {
@@ -95,8 +95,8 @@ TEST(TrianglesFirstOrder, IsConstantOnAMapThatTurnsAlike) {
   for (const Interpolation interpolation : {Interpolation::bilinear, Interpolation::bicubic}) {
     std::vector<Eigen::Vector2d> normals[2];
     for (int n = 0; n < 128 * 128; ++n) {
-      const Eigen::Vector2d noise(synthesis::random_unit(3, 0, n) - 0.5,
-                                  synthesis::random_unit(3, 1, n) - 0.5);
+      const Eigen::Vector2d noise(random_unit(3, 0, n) - 0.5,
+                                  random_unit(3, 1, n) - 0.5);
       const Eigen::Vector2d place(n % 128 - 63.5, n / 128 - 63.5);
       normals[0].push_back(0.02 * noise);
       normals[1].push_back(0.02 * noise + slope * place);
@@ -122,7 +122,7 @@ TEST(TrianglesFirstOrder, CostsPlainQueriesNothing) {
   TriangleEvaluator evaluator(device(), surface);
   std::vector<Query> queries;
   for (int n = 0; n < 300; ++n) {
-    const auto random = [&](std::uint64_t stream) { return synthesis::random_unit(5, stream, n); };
+    const auto random = [&](std::uint64_t stream) { return random_unit(5, stream, n); };
     queries.push_back(
         {make_footprint(surface, {random(0), random(1)}, 0.3 + 5 * random(2), 0.3, 3 * random(3)),
          surface.texel(n, 3 * n), 0.003 + 0.02 * random(4)});
@@ -160,4 +160,4 @@ TEST(TrianglesFirstOrder, DependsOnTheQueryAlone) {
 }
 
 }  // namespace
-}  // namespace mica::host
+}  // namespace mica::host::first_order_triangles_test
