@@ -95,8 +95,7 @@ TEST(TrianglesFirstOrder, IsConstantOnAMapThatTurnsAlike) {
   for (const Interpolation interpolation : {Interpolation::bilinear, Interpolation::bicubic}) {
     std::vector<Eigen::Vector2d> normals[2];
     for (int n = 0; n < 128 * 128; ++n) {
-      const Eigen::Vector2d noise(random_unit(3, 0, n) - 0.5,
-                                  random_unit(3, 1, n) - 0.5);
+      const Eigen::Vector2d noise(random_unit(3, 0, n) - 0.5, random_unit(3, 1, n) - 0.5);
       const Eigen::Vector2d place(n % 128 - 63.5, n / 128 - 63.5);
       normals[0].push_back(0.02 * noise);
       normals[1].push_back(0.02 * noise + slope * place);
