@@ -11,6 +11,7 @@ if(GIT_FOUND AND EXISTS ${PROJECT_SOURCE_DIR}/.git)
     OUTPUT_VARIABLE date OUTPUT_STRIP_TRAILING_WHITESPACE)
 endif()
 set(MICA_DATE ${date})
+string(REGEX MATCH "[0-9][0-9][0-9][0-9]" MICA_YEAR ${date})
 
 # What policy asks of every package: its changelog and its licence.
 foreach(package mica libmica-dev)
@@ -26,6 +27,7 @@ install(FILES ${PROJECT_BINARY_DIR}/packaging/libmica-dev/changelog.gz
         DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libmica-dev COMPONENT development)
 
 set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "")  # each component has its own, as the first line of its description
 set(CPACK_PACKAGE_CONTACT ${MICA_CONTACT})
 set(CPACK_PACKAGE_VENDOR Mica)
 set(CPACK_VERBATIM_VARIABLES ON)
@@ -41,7 +43,7 @@ set(CPACK_DEBIAN_RUNTIME_PACKAGE_NAME mica)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_DEPENDS "pocl-opencl-icd | opencl-icd")
-set(CPACK_COMPONENT_RUNTIME_DESCRIPTION
+set(CPACK_DEBIAN_RUNTIME_DESCRIPTION
     "glint normal distribution functions on OpenCL
 Computes the distribution of normals inside each pixel's footprint on a
 surface with an explicit normal map, in large batches on OpenCL devices:
@@ -55,7 +57,7 @@ set(link_packages libopenimageio-dev libembree-dev libtbb-dev libtomlplusplus-de
                   ocl-icd-opencl-dev pkg-config)
 list(JOIN link_packages ", " CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS "pocl-opencl-icd | opencl-icd")
-set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
+set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION
     "glint normal distribution functions on OpenCL (development)
 The library behind the command mica: headers, static library, CMake package
 and pkg-config file.")
