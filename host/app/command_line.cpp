@@ -127,9 +127,9 @@ Option CommandLine::add_option(const std::string& name, std::vector<std::string>
   return Option(app_->add_option(name, values, description));
 }
 
-Option CommandLine::add_option(const std::string& name, std::function<void(const std::string&)> take,
+Option CommandLine::add_option(const std::string& name, const std::function<void(const std::string&)>& take,
                                const std::string& description) {
-  return Option(app_->add_option_function<std::string>(name, std::move(take), description));
+  return Option(app_->add_option_function<std::string>(name, take, description));
 }
 
 Option CommandLine::add_flag(const std::string& name, bool& value, const std::string& description) {

@@ -70,7 +70,7 @@ class CommandLine {
   Option add_option(const std::string& name, std::vector<std::string>& values,
                     const std::string& description);
   /// @param take gets the text when the option is given.
-  Option add_option(const std::string& name, std::function<void(const std::string&)> take,
+  Option add_option(const std::string& name, const std::function<void(const std::string&)>& take,
                     const std::string& description);
   Option add_flag(const std::string& name, bool& value, const std::string& description);
   Option option(const std::string& name);
