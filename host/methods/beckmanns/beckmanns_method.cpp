@@ -36,11 +36,11 @@ class BeckmannsMethod : public Method {
     StructureSize size;
     size.device_bytes =
         (asked.densities ? 2 : 1) * lobe_structure_bytes(asked.width, asked.height, own.elements);
-    size.kernel = "beckmanns.cl";
+    size.kernel = "beckmanns/beckmanns.cl";
     if (own.masking != Masking::geometric) {
       size.device_bytes +=
           slope_pyramid_bytes(asked.width * own.elements, asked.height * own.elements, false);
-      size.kernel = "beckmann_patches.cl";
+      size.kernel = "beckmanns/beckmann_patches.cl";
     }
     return size;
   }

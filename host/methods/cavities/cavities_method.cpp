@@ -58,7 +58,7 @@ class CavitiesMethod : public Method {
     StructureSize size;
     size.device_bytes = map_structure_bytes(asked.width, asked.height);
     if (own.energy == LostEnergy::table) size.host_bytes = footprint_energy_bytes(asked.width, asked.height);
-    size.kernel = fmt::format("cavities.cl -DMICA_INTERPOLATION={} -DMICA_SEEDS={}",
+    size.kernel = fmt::format("cavities/cavities.cl -DMICA_INTERPOLATION={} -DMICA_SEEDS={}",
                               static_cast<int>(asked.interpolation), own.per_texel);
     return size;
   }

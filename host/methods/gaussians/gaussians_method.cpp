@@ -45,8 +45,9 @@ class GaussiansMethod : public Method {
   std::unique_ptr<MethodSettings> settings() const override { return std::make_unique<ElementSettings>(); }
 
   StructureSize structure(const StructureAsked& asked, const MethodSettings&) const override {
-    return {gaussian_mixture_bytes(asked.width, asked.height), 0,
-            fmt::format("gaussians.cl -DMICA_INTERPOLATION={}", static_cast<int>(asked.interpolation))};
+    return {
+        gaussian_mixture_bytes(asked.width, asked.height), 0,
+        fmt::format("gaussians/gaussians.cl -DMICA_INTERPOLATION={}", static_cast<int>(asked.interpolation))};
   }
 
   std::unique_ptr<Evaluator> make(Device* device, const Surface* surface,

@@ -38,9 +38,9 @@ class GridMethod : public Method {
   StructureSize structure(const StructureAsked& asked, const MethodSettings& settings) const override {
     const GlintsDescription& glints = glints_of(settings);
     StructureSize size;
-    size.kernel = "grid.cl " + grid_kernel_options(glints.distribution, glint_features(glints));
+    size.kernel = "grid/grid.cl " + grid_kernel_options(glints.distribution, glint_features(glints));
     if (asked.brdf)
-      size.kernel += ", grid_brdf.cl " + grid_kernel_options(glints.distribution, GridFeatures{});
+      size.kernel += ", grid/grid_brdf.cl " + grid_kernel_options(glints.distribution, GridFeatures{});
     return size;
   }
 

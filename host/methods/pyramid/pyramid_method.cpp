@@ -16,7 +16,7 @@ class PyramidMethod : public Method {
 
   StructureSize structure(const StructureAsked& asked, const MethodSettings&) const override {
     return {map_structure_bytes(asked.width, asked.height) + pyramid_levels_bytes(asked.width, asked.height),
-            0, "pyramid.cl"};
+            0, "pyramid/pyramid.cl"};
   }
 
   std::unique_ptr<Evaluator> make(Device* device, const Surface* surface,

@@ -18,7 +18,8 @@ class SmoothMethod : public Method {
 
   StructureSize structure(const StructureAsked& asked, const MethodSettings& settings) const override {
     const int elements = settings_as<ElementSettings>(settings).elements;
-    return {slope_pyramid_bytes(asked.width * elements, asked.height * elements, true), 0, "smooth.cl"};
+    return {slope_pyramid_bytes(asked.width * elements, asked.height * elements, true), 0,
+            "smooth/smooth.cl"};
   }
 
   std::unique_ptr<Evaluator> make(Device* device, const Surface* surface,

@@ -49,8 +49,9 @@ class TrianglesMethod : public Method {
   }
 
   StructureSize structure(const StructureAsked& asked, const MethodSettings&) const override {
-    return {map_structure_bytes(asked.width, asked.height), 0,
-            fmt::format("triangles.cl -DMICA_INTERPOLATION={}", static_cast<int>(asked.interpolation))};
+    return {
+        map_structure_bytes(asked.width, asked.height), 0,
+        fmt::format("triangles/triangles.cl -DMICA_INTERPOLATION={}", static_cast<int>(asked.interpolation))};
   }
 
   std::unique_ptr<Evaluator> make(Device* device, const Surface* surface,
