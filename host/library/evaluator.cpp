@@ -57,7 +57,7 @@ class Evaluator::Implementation {
       host::refuse_query(n, method_.query_problem(host::to_query(queries, n), surface_.get()));
   }
   void calibrate_once(const Queries& queries) {
-    if (calibrated_) return;
+    if (calibrated_ || queries.count == 0) return;
     evaluator_->calibrate(
         queries.count, [&](std::size_t n) { return host::to_query(queries, n); }, 1);
     calibrated_ = true;
