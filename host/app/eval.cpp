@@ -91,7 +91,9 @@ int run(const EvalOptions& options) {
   table.check([&](const Query& query) { return method.query_problem(query, subject.map()); });
   times.load = lap(&start);
   const OpenEvaluator open = open_evaluator(method, *settings, options.device, subject.map());
-  calibrate(open, table.size(), [&](std::size_t row) { return table.query(row); });
+  open.evaluator->calibrate(
+      table.size(), [&](std::size_t row) { return table.query(row); }, 1);
+  log_choices(open);
   times.build = lap(&start);
   const std::vector<float> densities =
       evaluate_all(open.evaluator.get(), table.size(), [&](std::size_t row) { return table.query(row); });

@@ -80,15 +80,15 @@ Answers answer_all(const PatchEvaluation& options, const PatchTable& table, Patc
   };
   switch (to_quantity(options.quantity)) {
     case PatchQuantity::brdf:
-      work_in_chunks(table.size(), brdf_rows);
+      work_with_progress(table.size(), brdf_rows);
       break;
     case PatchQuantity::energy:
       answers.columns = 2;
-      work_in_chunks(table.size(), energy_rows);
+      work_with_progress(table.size(), energy_rows);
       break;
     case PatchQuantity::sample:
       answers.columns = 5;
-      work_in_chunks(table.size(), sample_rows);
+      work_with_progress(table.size(), sample_rows);
       break;
   }
   return answers;

@@ -6,25 +6,15 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <filesystem>
 
 #include "host/app/progress.h"
+#include "host/base/chunks.h"
 #include "host/base/interrupt.h"
 #include "mica/error.h"
 
 namespace mica::host::app {
-namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-}  // namespace
-
 OpenEvaluator open_evaluator(const Method& method, const MethodSettings& settings, int device_index,
                              const Surface* surface) {
   method.check(settings);
@@ -34,9 +24,7 @@ OpenEvaluator open_evaluator(const Method& method, const MethodSettings& setting
   return open;
 }
 
-void calibrate(const OpenEvaluator& open, std::size_t count, const std::function<Query(std::size_t)>& query,
-               double scale) {
-  open.evaluator->calibrate(count, query, scale);
+void log_choices(const OpenEvaluator& open) {
   for (const AutoChoice& choice : open.evaluator->choices())
     spdlog::info(
         "{}: footprints of about {:.3g} texels, roughness from {:.3g}: {}; relative L2 {:.2g}, at most "
@@ -57,23 +45,13 @@ nlohmann::json describe_choices(const OpenEvaluator& open) {
   return list;
 }
 
-void work_in_chunks(std::size_t count, const std::function<void(std::size_t, std::size_t)>& work) {
-  constexpr std::size_t max_chunk = 1 << 20;  // queries; also bounds the host's memory
+void work_with_progress(std::size_t count, const std::function<void(std::size_t, std::size_t)>& work) {
   Progress progress("queries", false);
-  const Clock::time_point all_start = Clock::now();
-  std::size_t chunk = 256;
-  for (std::size_t first = 0; first < count;) {
+  const Stopwatch watch;
+  work_in_chunks(count, work, [&](std::size_t done) {
     check_interrupt();
-    const Clock::time_point start = Clock::now();
-    const std::size_t some = std::min(chunk, count - first);
-    work(first, some);
-    first += some;
-    const double seconds = seconds_since(start);
-    if (seconds_since(all_start) > 1) progress.update(static_cast<long>(first), static_cast<long>(count));
-    if (seconds < 0.5) chunk = std::min(2 * chunk, max_chunk);
-    if (seconds > 2) chunk = std::max<std::size_t>(chunk / 2, 1);
-  }
-  check_interrupt();
+    if (watch.seconds() > 1) progress.update(static_cast<long>(done), static_cast<long>(count));
+  });
 }
 
 std::vector<float> evaluate_all(Evaluator* evaluator, std::size_t count,
@@ -81,7 +59,7 @@ std::vector<float> evaluate_all(Evaluator* evaluator, std::size_t count,
   std::vector<float> densities;
   densities.reserve(count);
   std::vector<Query> queries;
-  work_in_chunks(count, [&](std::size_t first, std::size_t some) {
+  work_with_progress(count, [&](std::size_t first, std::size_t some) {
     queries.resize(some);
     for (std::size_t n = 0; n < some; ++n) queries[n] = query(first + n);
     const std::vector<float> answers = evaluator->evaluate(queries);

@@ -26,17 +26,15 @@ struct OpenEvaluator {
 OpenEvaluator open_evaluator(const Method& method, const MethodSettings& settings, int device_index,
                              const Surface* surface);
 
-/// For methods that choose among others: by a sample of queries 0 .. count - 1, and logs the choices.
-/// @param scale how many queries each of these stands for.
-void calibrate(const OpenEvaluator& open, std::size_t count, const std::function<Query(std::size_t)>& query,
-               double scale = 1);
+/// Logs what a method that chooses among others chose.
+void log_choices(const OpenEvaluator& open);
 
 /// What was chosen for each kind of query; empty for methods that choose nothing.
 nlohmann::json describe_choices(const OpenEvaluator& open);
 
 /// Calls `work(first, count)` for successive chunks of 0 .. count - 1, each of about a second, between which
 /// it checks for interrupts; shows progress on stderr once it has taken a second.
-void work_in_chunks(std::size_t count, const std::function<void(std::size_t, std::size_t)>& work);
+void work_with_progress(std::size_t count, const std::function<void(std::size_t, std::size_t)>& work);
 
 /// Densities of queries 0 .. count - 1, in chunks.
 std::vector<float> evaluate_all(Evaluator* evaluator, std::size_t count,

@@ -86,7 +86,7 @@ Image evaluate(const NdfOptions& options, const Surface& surface) {
   Image image;
   image.width = image.height = options.size;
   image.channels = {"ndf.Y"};
-  image.pixels = draw_images(
+  image.pixels = draw_with_progress(
       open, 1, [&](std::size_t) { return query; }, window);
   const double share =
       std::accumulate(image.pixels.begin(), image.pixels.end(), 0.0) * window.step() * window.step();
@@ -122,7 +122,7 @@ int run_centers(const NdfOptions& options) {
   const OpenEvaluator open =
       open_evaluator(method_of(options.method), *settings_of(options.method), options.device, &surface);
   const ImageWindow window = window_of(options);
-  const std::vector<float> images = draw_images(open, centers.rows, footprint_of, window);
+  const std::vector<float> images = draw_with_progress(open, centers.rows, footprint_of, window);
   write_file_atomically(options.output, to_npy(images, window.count()));
   return 0;
 }

@@ -4,13 +4,13 @@
 
 #include <mutex>
 
+#include "host/base/chunks.h"
 #include "host/base/random.h"
-#include "host/device/device.h"
 #include "host/library/query.h"
 #include "host/library/settings.h"
+#include "host/library/subject.h"
 #include "host/library/work.h"
 #include "host/methods/patch_brdf.h"
-#include "host/surface/surface.h"
 
 MICA_BEGIN_NAMESPACE
 
@@ -18,15 +18,9 @@ class Brdf::Implementation {
  public:
   Implementation(const Device& device, std::shared_ptr<const host::Surface> surface, const std::string& name,
                  const Settings& settings, const Methods& methods)
-      : device_(device.implementation()),
-        surface_(std::move(surface)),
-        methods_(methods.implementation()),
-        method_(methods_->get(name)) {
-    if (method_.traits().map != (surface_ != nullptr))
-      throw UsageError(
-          fmt::format("{} {}", name, surface_ ? "needs no map; found one" : "needs a map; found none"));
-    brdf_ = method_.make_brdf(device_.get(), surface_.get(), *host::method_settings(method_, settings));
-  }
+      : subject_(device, std::move(surface), name, methods),
+        brdf_(subject_.method().make_brdf(subject_.device(), subject_.surface(),
+                                          *host::method_settings(subject_.method(), settings))) {}
 
   /// Answers of all questions, `take(number, answer)` one by one, after all were found to have an answer.
   template <typename Question, typename Answer, typename Ask, typename Take>
@@ -34,25 +28,27 @@ class Brdf::Implementation {
               std::vector<Answer> (host::PatchBrdf::*answers)(const std::vector<Question>&), const Ask& ask,
               const Take& take) {
     const std::lock_guard<std::mutex> lock(mutex_);
-    host::work_in_chunks(count, control, [&](std::size_t first, std::size_t some) {
+    const auto work = [&](std::size_t first, std::size_t some) {
       std::vector<Question> questions(some);
       for (std::size_t n = 0; n < some; ++n) questions[n] = ask(first + n);
       const std::vector<Answer> results = ((*brdf_).*answers)(questions);
       for (std::size_t n = 0; n < some; ++n) take(first + n, results[n]);
-    });
+    };
+    host::work_in_chunks(count, work, [&](std::size_t done) { host::report(control, done, count); });
   }
 
-  void check(std::size_t number, const host::ViewQuery& view) const {
-    host::refuse_query(number, host::view_problem(method_, view, surface_.get()));
+  /// A view is checked like a query, whose half vector does not matter.
+  void check(const Views& views) const {
+    subject_.check(views.count, [&](std::size_t n) {
+      const host::ViewQuery view = host::to_view(views, n);
+      return host::Query{view.footprint, Eigen::Vector2d::Zero(), view.roughness};
+    });
   }
   host::PatchBrdf& brdf() { return *brdf_; }
 
  private:
   std::mutex mutex_;
-  std::shared_ptr<host::Device> device_;
-  std::shared_ptr<const host::Surface> surface_;
-  std::shared_ptr<const host::MethodRegistry> methods_;
-  const host::Method& method_;
+  host::Subject subject_;
   std::unique_ptr<host::PatchBrdf> brdf_;  // goes before what it stands on
 };
 
@@ -66,17 +62,6 @@ Brdf::Brdf(const Device& device, const std::string& method, const Settings& sett
 
 namespace {
 
-Brdf::Implementation& opened(const std::shared_ptr<Brdf::Implementation>& implementation) {
-  if (!implementation) throw UsageError("BRDF: found one that was moved from; expected one with a method");
-  return *implementation;
-}
-
-void check_room_of(std::size_t expected, Span<float> room, const char* what) {
-  if (room.size != expected || (room.data == nullptr && expected > 0))
-    throw UsageError(fmt::format("{}: found room for {}; expected {}", what,
-                                 room.data == nullptr ? 0 : room.size, expected));
-}
-
 float part_of(const host::BrdfValue& value, BrdfPart part) {
   if (part == BrdfPart::single) return value.single;
   return part == BrdfPart::multiple ? value.multiple : value.single + value.multiple;
@@ -87,15 +72,15 @@ void check_views(const Views& views, const Brdf::Implementation& implementation)
   for (const Column* column : {&views.ox, &views.oy, &views.oz, &views.roughness})
     if (views.count > 0 && column->is_null())
       throw UsageError("queries: found a column without memory; expected numbers");
-  for (std::size_t n = 0; n < views.count; ++n) implementation.check(n, host::to_view(views, n));
+  implementation.check(views);
 }
 
 }  // namespace
 
 void Brdf::evaluate(const Lightings& queries, Span<float> values, BrdfPart part,
                     const RunControl& control) const {
-  Implementation& implementation = opened(implementation_);
-  check_room_of(queries.count, values, "values");
+  Implementation& implementation = host::opened(implementation_);
+  host::check_room(queries.count, values, "values");
   check_views(queries, implementation);
   for (const Column* column : {&queries.ix, &queries.iy, &queries.iz})
     if (queries.count > 0 && column->is_null())
@@ -108,8 +93,8 @@ void Brdf::evaluate(const Lightings& queries, Span<float> values, BrdfPart part,
 }
 
 void Brdf::energy(const Views& views, Span<float> albedos, const RunControl& control) const {
-  Implementation& implementation = opened(implementation_);
-  check_room_of(2 * views.count, albedos, "albedos");
+  Implementation& implementation = host::opened(implementation_);
+  host::check_room(2 * views.count, albedos, "albedos");
   check_views(views, implementation);
   implementation.answer<host::ViewQuery, host::Albedo>(
       views.count, control, &host::PatchBrdf::energy, [&](std::size_t n) { return host::to_view(views, n); },
@@ -120,8 +105,8 @@ void Brdf::energy(const Views& views, Span<float> albedos, const RunControl& con
 
 void Brdf::sample(const Views& views, std::uint64_t seed, Span<float> samples,
                   const RunControl& control) const {
-  Implementation& implementation = opened(implementation_);
-  check_room_of(5 * views.count, samples, "samples");
+  Implementation& implementation = host::opened(implementation_);
+  host::check_room(5 * views.count, samples, "samples");
   check_views(views, implementation);
   implementation.answer<host::SampleQuery, host::BrdfSample>(
       views.count, control, &host::PatchBrdf::sample,
@@ -136,19 +121,19 @@ void Brdf::sample(const Views& views, std::uint64_t seed, Span<float> samples,
 }
 
 std::string Brdf::method() const {
-  return opened(implementation_).brdf().name();
+  return host::opened(implementation_).brdf().name();
 }
 
 std::size_t Brdf::device_bytes() const {
-  return opened(implementation_).brdf().device_bytes();
+  return host::opened(implementation_).brdf().device_bytes();
 }
 
 double Brdf::build_seconds() const {
-  return opened(implementation_).brdf().build_seconds();
+  return host::opened(implementation_).brdf().build_seconds();
 }
 
 double Brdf::device_seconds() const {
-  return opened(implementation_).brdf().device_seconds();
+  return host::opened(implementation_).brdf().device_seconds();
 }
 
 MICA_END_NAMESPACE

@@ -12,6 +12,7 @@
 #include "host/image/image.h"
 #include "host/job/job.h"
 #include "host/job/read_job.h"
+#include "host/library/subject.h"
 #include "host/render/render.h"
 #include "mica/error.h"
 
@@ -122,21 +123,12 @@ class Renderer::Implementation {
 Renderer::Renderer(const Device& device, const Job& job)
     : implementation_(std::make_shared<Implementation>(device, job)) {}
 
-namespace {
-
-Renderer::Implementation& opened(const std::shared_ptr<Renderer::Implementation>& implementation) {
-  if (!implementation) throw UsageError("renderer: found one that was moved from; expected one with a job");
-  return *implementation;
-}
-
-}  // namespace
-
 Image Renderer::render(const RunControl& control) const {
-  return opened(implementation_).render(std::nullopt, control);
+  return host::opened(implementation_).render(std::nullopt, control);
 }
 
 Image Renderer::render(int frame, const RunControl& control) const {
-  return opened(implementation_).render(frame, control);
+  return host::opened(implementation_).render(frame, control);
 }
 
 MICA_END_NAMESPACE

@@ -9,6 +9,8 @@
 
 #include "host/library/query.h"
 #include "host/methods/evaluator.h"
+#include "host/methods/oracle_standard.h"
+#include "host/methods/ready_densities.h"
 #include "host/methods/registry.h"
 #include "host/methods/standard.h"
 #include "host/reference/oracle.h"
@@ -33,15 +35,6 @@ class OutsideSettings : public SettingsOf<OutsideSettings> {
 
  private:
   std::vector<MethodNumber> numbers_;
-};
-
-class ReadyDensities : public PendingDensities {
- public:
-  explicit ReadyDensities(std::vector<float> densities) : densities_(std::move(densities)) {}
-  std::vector<float> wait() override { return std::move(densities_); }
-
- private:
-  std::vector<float> densities_;
 };
 
 class OutsideEvaluator : public Evaluator {
@@ -73,24 +66,6 @@ class OutsideEvaluator : public Evaluator {
   std::string name_;
   std::unique_ptr<mica::Method::Densities> densities_;
   std::size_t bytes_;
-};
-
-/// The map, to a relative error of the method's own.
-class OutsideStandard : public Standard {
- public:
-  OutsideStandard(const reference::Oracle& oracle, double error) : oracle_(oracle), error_(error) {}
-  std::vector<double> references(const std::vector<Query>& queries) const override {
-    std::vector<double> densities;
-    for (const reference::OracleResult& result : oracle_.evaluate(queries))
-      densities.push_back(result.density);
-    return densities;
-  }
-  Promise promise(double) const override { return {error_, error_}; }
-  bool is_the_map() const override { return true; }
-
- private:
-  const reference::Oracle& oracle_;
-  double error_;
 };
 
 /// A method from outside, as the library's own are seen.
@@ -126,7 +101,11 @@ class OutsideMethod : public Method {
   std::unique_ptr<Standard> standard(const Surface*, const reference::Oracle* map,
                                      const MethodSettings&) const override {
     const double error = method_->promised_error();
-    return error > 0 ? std::make_unique<OutsideStandard>(*map, error) : nullptr;
+    return error > 0 ? std::make_unique<OracleStandard>(*map,
+                                                        [error](double) {
+                                                          return Promise{error, error};
+                                                        })
+                     : nullptr;
   }
 
  private:

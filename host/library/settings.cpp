@@ -61,8 +61,4 @@ std::unique_ptr<MethodSettings> method_settings(const Method& method, const Sett
   return result;
 }
 
-void refuse_query(std::size_t number, const std::string& problem) {
-  if (!problem.empty()) throw UsageError(fmt::format("query {}: {}", number, problem));
-}
-
 }  // namespace mica::host

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <cmath>
 #include <functional>
 #include <string>
@@ -145,6 +148,34 @@ inline std::vector<std::vector<Query>> without_first_order(const Surface& surfac
                                                            double largest_texels, int footprints,
                                                            int half_vectors, double smallest_texels = 0.3) {
   return first_order_probes(surface, lobe, largest_texels, footprints, half_vectors, 0, smallest_texels);
+}
+
+/// On a flat map D is the lobe about its normal, widened by the turn over the footprint: G2(n - h; S + H C
+/// H^T).
+/// @param make an evaluator of the map. @param allowed error of a footprint of `sigma` texels, of the peak.
+template <typename MakeEvaluator>
+void expect_widened_lobes(const MakeEvaluator& make, const std::function<double(double sigma)>& allowed) {
+  const Eigen::Vector2d normal(0.1, -0.05);
+  const Surface surface(96, 70, Interpolation::bilinear, std::vector<Eigen::Vector2d>(96 * 70, normal));
+  auto evaluator = make(surface);
+  for (const double sigma : {0.6, 3.0, 10.0, 500.0}) {
+    for (const double lobe : {0.004, 0.02}) {
+      for (const double turns : {0.0, 0.3, 1.0, 4.0}) {
+        for (const double off : {0.0, 1.5, 2.5}) {
+          Query query =
+              turned_query(surface, {0.3, 0.8}, sigma, 0.5 * sigma, 1.1, lobe, 0.25 * lobe, 0.7, turns);
+          const Eigen::Matrix2d wide = lobe_covariance(query) + query.half_vector_turn *
+                                                                    query.footprint.cov_uv *
+                                                                    query.half_vector_turn.transpose();
+          const Eigen::Matrix2d factor = wide.llt().matrixL();
+          query.half_vector = normal + off * (factor * Eigen::Vector2d(0.6, -0.8));
+          const double peak = 1 / (2 * kPi * std::sqrt(wide.determinant()));
+          EXPECT_NEAR(evaluator->evaluate({query})[0] / peak, std::exp(-0.5 * off * off), allowed(sigma))
+              << "footprint " << sigma << ", lobe " << lobe << ", turn of " << turns << " lobes, off " << off;
+        }
+      }
+    }
+  }
 }
 
 }  // namespace mica::host

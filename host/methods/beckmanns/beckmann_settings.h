@@ -13,9 +13,7 @@ class BeckmannSettings : public SettingsOf<BeckmannSettings> {
                    "Of a BRDF: of every lobe under the footprint, of one lobe with their moments, or of the "
                    "map's roughness",
                    masking);
-    visitor.whole("elements",
-                  "Elements of a mixture, a texel and axis: more are slower and closer to the map", elements,
-                  1, kMaxElements);
+    visit_elements(visitor, elements);
   }
 
   Masking masking = Masking::exact;

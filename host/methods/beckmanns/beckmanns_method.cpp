@@ -66,14 +66,7 @@ class BeckmannsMethod : public Method {
   }
 
   std::vector<MethodVariant> variants(const std::vector<int>& elements) const override {
-    std::vector<MethodVariant> all;
-    for (const int count : elements) {
-      auto settings = std::make_unique<BeckmannSettings>();
-      settings->elements = count;
-      all.push_back({std::move(settings), fmt::format("{}, {} a texel and axis", name(), count),
-                     fmt::format("{}", count)});
-    }
-    return all;
+    return element_variants<BeckmannSettings>(name(), elements);
   }
 };
 

@@ -61,14 +61,7 @@ class GaussiansMethod : public Method {
   }
 
   std::vector<MethodVariant> variants(const std::vector<int>& elements) const override {
-    std::vector<MethodVariant> all;
-    for (const int count : elements) {
-      auto settings = std::make_unique<ElementSettings>();
-      settings->elements = count;
-      all.push_back({std::move(settings), fmt::format("{}, {} a texel and axis", name(), count),
-                     fmt::format("{}", count)});
-    }
-    return all;
+    return element_variants<ElementSettings>(name(), elements);
   }
 
   OperationCounter counter(Device* device, const Surface* surface,

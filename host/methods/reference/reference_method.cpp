@@ -6,6 +6,7 @@
 #include "host/methods/evaluator.h"
 #include "host/methods/method.h"
 #include "host/methods/patch_brdf.h"
+#include "host/methods/ready_densities.h"
 #include "host/methods/standard.h"
 #include "host/reference/oracle.h"
 #include "mica/error.h"
@@ -14,15 +15,6 @@ namespace mica::host {
 namespace {
 
 constexpr double kLeastTolerance = 1e-12, kLargestTolerance = 0.1;
-
-class KnownDensities : public PendingDensities {
- public:
-  explicit KnownDensities(std::vector<float> densities) : densities_(std::move(densities)) {}
-  std::vector<float> wait() override { return std::move(densities_); }
-
- private:
-  std::vector<float> densities_;
-};
 
 /// The oracle behind the interface of the devices' evaluators.
 class ReferenceEvaluator : public Evaluator {
@@ -37,7 +29,7 @@ class ReferenceEvaluator : public Evaluator {
     std::vector<float> densities(results.size());
     std::transform(results.begin(), results.end(), densities.begin(),
                    [](const reference::OracleResult& result) { return static_cast<float>(result.density); });
-    return std::make_unique<KnownDensities>(std::move(densities));
+    return std::make_unique<ReadyDensities>(std::move(densities));
   }
   double error_estimate(const Query&, double density) const override { return tolerance_ * density; }
   std::string name() const override { return "reference"; }

@@ -2,34 +2,14 @@
 
 #include "host/methods/map/map_structure.h"
 #include "host/methods/method.h"
-#include "host/methods/standard.h"
+#include "host/methods/oracle_standard.h"
 #include "host/methods/triangles/triangle_evaluator.h"
-#include "host/reference/oracle.h"
 #include "mica/error.h"
 
 namespace mica::host {
 namespace {
 
 constexpr double kTrianglesTolerance = 1e-4;
-
-/// The map itself, in double precision.
-class MapStandard : public Standard {
- public:
-  explicit MapStandard(const reference::Oracle& oracle) : oracle_(oracle) {}
-
-  std::vector<double> references(const std::vector<Query>& queries) const override {
-    std::vector<double> densities;
-    for (const reference::OracleResult& result : oracle_.evaluate(queries))
-      densities.push_back(result.density);
-    return densities;
-  }
-  Promise promise(double roughness) const override { return {relative_bound(roughness), kPeakBound}; }
-  bool is_the_map() const override { return true; }
-  double highest(const Query& query) const override { return (1 + 2e-3) * lobe_peak(query); }
-
- private:
-  const reference::Oracle& oracle_;
-};
 
 class TrianglesMethod : public Method {
  public:
@@ -61,7 +41,9 @@ class TrianglesMethod : public Method {
 
   std::unique_ptr<Standard> standard(const Surface*, const reference::Oracle* map,
                                      const MethodSettings&) const override {
-    return std::make_unique<MapStandard>(*map);
+    return std::make_unique<OracleStandard>(*map, [](double roughness) {
+      return Promise{relative_bound(roughness), kPeakBound};
+    });
   }
 
   OperationCounter counter(Device* device, const Surface* surface, const MethodSettings&) const override {

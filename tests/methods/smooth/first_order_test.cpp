@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <cmath>
 #include <cstdio>
+#include <memory>
 
 #include "host/methods/smooth/smooth_evaluator.h"
 #include "tests/methods/first_order_queries.h"
@@ -37,27 +38,9 @@ TEST(SmoothFirstOrder, IsHardlyLessPreciseThanWithout) {
 }
 
 TEST(SmoothFirstOrder, OfAFlatMapIsTheLobeWidenedByTheTurn) {
-  const Eigen::Vector2d normal(0.1, -0.05);
-  const Surface surface(96, 70, Interpolation::bilinear, std::vector<Eigen::Vector2d>(96 * 70, normal));
-  SmoothEvaluator evaluator(device(), surface);
-  for (const double sigma : {0.6, 3.0, 10.0, 500.0}) {
-    for (const double lobe : {0.004, 0.02}) {
-      for (const double turns : {0.0, 0.3, 1.0, 4.0}) {
-        for (const double off : {0.0, 1.5, 2.5}) {
-          Query query =
-              turned_query(surface, {0.3, 0.8}, sigma, 0.5 * sigma, 1.1, lobe, 0.25 * lobe, 0.7, turns);
-          const Eigen::Matrix2d wide = lobe_covariance(query) + query.half_vector_turn *
-                                                                    query.footprint.cov_uv *
-                                                                    query.half_vector_turn.transpose();
-          const Eigen::Matrix2d factor = wide.llt().matrixL();
-          query.half_vector = normal + off * (factor * Eigen::Vector2d(0.6, -0.8));
-          const double peak = 1 / (2 * kPi * std::sqrt(wide.determinant()));
-          EXPECT_NEAR(evaluator.evaluate({query})[0] / peak, std::exp(-0.5 * off * off), 0.05)
-              << "footprint " << sigma << ", lobe " << lobe << ", turn of " << turns << " lobes, off " << off;
-        }
-      }
-    }
-  }
+  expect_widened_lobes(
+      [](const Surface& surface) { return std::make_unique<SmoothEvaluator>(device(), surface); },
+      [](double) { return 0.05; });
 }
 
 }  // namespace
