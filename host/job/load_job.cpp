@@ -9,6 +9,7 @@
 
 #include "host/job/read_job.h"
 #include "host/job/toml_document.h"
+#include "host/scene/aovs.h"
 
 namespace mica::host {
 namespace {
@@ -54,8 +55,9 @@ ImageSettings read_image(TableReader& table) {
   table.read("subpixels", image.subpixels, closed(1, 16));
   table.read("samples", image.samples, closed(1, 65536));
   table.read("max_bounces", image.max_bounces, closed(1, 64));
-  const std::vector<std::string_view> aovs = {"ndf", "uv", "footprint", "normal", "queries", "error"};
-  table.read("aovs", image.aovs, aovs);
+  std::vector<std::string_view> words;
+  for (const Aov& aov : aovs()) words.push_back(aov.word);
+  table.read("aovs", image.aovs, words);
   table.read("exposure", image.exposure, closed(-32, 32));
   table.read("tone_map", image.tone_map);
   return image;

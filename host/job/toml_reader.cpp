@@ -52,7 +52,8 @@ void TableReader::visit_child(const toml::node& child, const std::string& path, 
 }
 
 const toml::node* TableReader::find(std::string_view key) {
-  if (std::find(known_keys_.begin(), known_keys_.end(), key) == known_keys_.end()) known_keys_.push_back(key);
+  if (std::find(known_keys_.begin(), known_keys_.end(), key) == known_keys_.end())
+    known_keys_.emplace_back(key);
   return table_.get(key);
 }
 
@@ -81,11 +82,12 @@ void TableReader::report_unexpected(const toml::node& node, const std::string& p
 }
 
 void TableReader::report_unknown_keys() {
+  const std::vector<std::string_view> known(known_keys_.begin(), known_keys_.end());
   for (const auto& [key, node] : table_) {
     const std::string_view word = key.str();
-    if (std::find(known_keys_.begin(), known_keys_.end(), word) != known_keys_.end()) continue;
+    if (std::find(known.begin(), known.end(), word) != known.end()) continue;
     context_.issues.add(key.source(), fmt::format("{}: found an unknown key; expected {}{}", path_of(word),
-                                                  one_of(known_keys_), did_you_mean(word, known_keys_)));
+                                                  one_of(known), did_you_mean(word, known)));
   }
 }
 

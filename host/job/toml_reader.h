@@ -130,7 +130,7 @@ class TableReader {
   const toml::table& table_;
   std::string path_, name_;
   ReadContext& context_;
-  std::vector<std::string_view> known_keys_;
+  std::vector<std::string> known_keys_;  // copies: a method from outside may be gone when they are listed
   bool accepts_any_key_ = false;
 };
 

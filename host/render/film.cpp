@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "host/scene/aovs.h"
+
 namespace mica::host {
 
 Film::Film(int width, int height, const std::vector<std::string>& channels) {
@@ -11,21 +13,20 @@ Film::Film(int width, int height, const std::vector<std::string>& channels) {
   image_.pixels.assign(static_cast<std::size_t>(width) * height * channels.size(), 0.0f);
 }
 
-float* Film::channel(const std::string& name, std::size_t pixel) {
-  const auto found = std::find(image_.channels.begin(), image_.channels.end(), name);
-  if (found == image_.channels.end()) return nullptr;
-  return &image_.pixels[pixel * image_.channels.size() + (found - image_.channels.begin())];
+void Film::write(std::size_t first_pixel, const std::string& first_channel, std::size_t pixels,
+                 const std::function<void(std::size_t pixel, float* out)>& write_pixel) {
+  const auto found = std::find(image_.channels.begin(), image_.channels.end(), first_channel);
+  if (found == image_.channels.end()) return;
+  const std::size_t stride = image_.channels.size();
+  float* out =
+      &image_.pixels[first_pixel * stride + static_cast<std::size_t>(found - image_.channels.begin())];
+  for (std::size_t pixel = 0; pixel < pixels; ++pixel, out += stride) write_pixel(pixel, out);
 }
 
 void Film::add(const TracedRows& rows, const std::vector<float>& densities,
                const std::vector<float>& errors) {
   const std::size_t first_pixel = static_cast<std::size_t>(rows.first_row) * image_.width;
-  const std::size_t stride = image_.channels.size();
   const std::size_t pixels = static_cast<std::size_t>(rows.row_count) * image_.width;
-  const auto write = [&](const std::string& name, auto value_of_pixel) {
-    float* out = channel(name, first_pixel);
-    for (std::size_t pixel = 0; out && pixel < pixels; ++pixel) out[pixel * stride] = value_of_pixel(pixel);
-  };
 
   std::vector<Eigen::Vector3d> radiance(pixels);
   std::vector<double> density_sum(pixels, 0.0), error_sum(pixels, 0.0);
@@ -37,24 +38,13 @@ void Film::add(const TracedRows& rows, const std::vector<float>& densities,
     if (!errors.empty()) error_sum[glint.pixel] += errors[n];
   }
 
-  const char* const colors[] = {"R", "G", "B"};
-  for (int c = 0; c < 3; ++c)
-    write(colors[c], [&](std::size_t pixel) { return static_cast<float>(radiance[pixel][c]); });
-  write("ndf.Y", [&](std::size_t pixel) {
-    return static_cast<float>(density_sum[pixel] / std::max<int>(rows.query_count[pixel], 1));
+  write(first_pixel, "R", pixels, [&](std::size_t pixel, float* out) {
+    Eigen::Map<Eigen::Vector3f>(out) = radiance[pixel].cast<float>();
   });
-  write("error.Y", [&](std::size_t pixel) {
-    return static_cast<float>(error_sum[pixel] / std::max<int>(rows.query_count[pixel], 1));
-  });
-  write("uv.U", [&](std::size_t pixel) { return rows.uv[pixel].x(); });
-  write("uv.V", [&](std::size_t pixel) { return rows.uv[pixel].y(); });
-  write("footprint.CUU", [&](std::size_t pixel) { return rows.footprint[pixel].x(); });
-  write("footprint.CUV", [&](std::size_t pixel) { return rows.footprint[pixel].y(); });
-  write("footprint.CVV", [&](std::size_t pixel) { return rows.footprint[pixel].z(); });
-  write("normal.X", [&](std::size_t pixel) { return rows.normal[pixel].x(); });
-  write("normal.Y", [&](std::size_t pixel) { return rows.normal[pixel].y(); });
-  write("normal.Z", [&](std::size_t pixel) { return rows.normal[pixel].z(); });
-  write("queries.Y", [&](std::size_t pixel) { return static_cast<float>(rows.query_count[pixel]); });
+  for (const Aov& aov : aovs())
+    write(first_pixel, aov.channel(0), pixels, [&](std::size_t pixel, float* out) {
+      aov.write({rows, pixel, density_sum[pixel], error_sum[pixel]}, out);
+    });
 }
 
 }  // namespace mica::host

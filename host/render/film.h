@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -22,7 +23,10 @@ class Film {
   Image take() { return std::move(image_); }
 
  private:
-  float* channel(const std::string& name, std::size_t pixel);
+  /// Calls `write_pixel` for pixels from `first_pixel` on, with where a channel and those after it are;
+  /// unless the image does not have it.
+  void write(std::size_t first_pixel, const std::string& first_channel, std::size_t pixels,
+             const std::function<void(std::size_t pixel, float* out)>& write_pixel);
 
   Image image_;
 };

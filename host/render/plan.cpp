@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <set>
 
+#include "host/scene/aovs.h"
 #include "host/scene/scene.h"
 #include "host/surface/map_size.h"
 #include "kernels/types.h"
@@ -80,21 +81,6 @@ int evaluator_for(const Job& job, int material_index, Plan* plan) {
   return index;
 }
 
-std::vector<std::string> channels_for(const std::vector<std::string>& aovs) {
-  std::vector<std::string> channels = {"R", "G", "B"};
-  const auto add = [&](const std::string& aov, std::initializer_list<const char*> parts) {
-    if (std::find(aovs.begin(), aovs.end(), aov) == aovs.end()) return;
-    for (const char* part : parts) channels.push_back(aov + "." + part);
-  };
-  add("ndf", {"Y"});
-  add("uv", {"U", "V"});
-  add("footprint", {"CUU", "CUV", "CVV"});
-  add("normal", {"X", "Y", "Z"});
-  add("queries", {"Y"});
-  add("error", {"Y"});
-  return channels;
-}
-
 /// `error` is asked only of methods that say something of their error.
 void check_estimates(const Job& job, const Plan& plan) {
   if (std::count(plan.channels.begin(), plan.channels.end(), "error.Y") == 0) return;
@@ -151,7 +137,7 @@ Plan make_plan(const Job& job) {
     plan.evaluator_of_material.push_back(
         used.count(job.scene.materials[n].name) ? evaluator_for(job, static_cast<int>(n), &plan) : -1);
 
-  plan.channels = channels_for(job.image.aovs);
+  plan.channels = channels_of(job.image.aovs);
   check_estimates(job, plan);
   plan.warnings = missing_densities(job, plan);
   plan.queries_a_batch = kQueriesABatch;

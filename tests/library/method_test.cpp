@@ -114,6 +114,14 @@ TEST_F(OutsideMethod, RendersInAJob) {
   EXPECT_EQ(densities[8 * 16 + 8], 2);
   EXPECT_THROW(Job::load("job.toml"), UsageError);  // without the registry nobody knows it
   EXPECT_THROW(Job::load("job.toml", {"material.flat.level=11"}, with_toy()), UsageError);
+  // Its keys may stay when another method is tried, and are among those that a mistake is answered with.
+  EXPECT_NO_THROW(Job::load("job.toml", {"material.flat.ndf=\"triangles\""}, with_toy()));
+  try {
+    Job::load("job.toml", {"material.flat.ndf=\"triangles\"", "material.flat.nothing=1"}, with_toy());
+    FAIL();
+  } catch (const UsageError& error) {
+    EXPECT_NE(std::string(error.what()).find("level"), std::string::npos) << error.what();
+  }
 }
 
 TEST_F(OutsideMethod, IsMeasuredAndTested) {
