@@ -78,6 +78,7 @@ class OutsideMethod : public Method {
   MethodTraits traits() const override {
     MethodTraits traits;
     traits.device = false;
+    traits.first_order = method_->takes_first_order();
     return traits;
   }
   bool takes(Interpolation interpolation) const override {

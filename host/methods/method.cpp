@@ -33,6 +33,12 @@ std::unique_ptr<PatchBrdf> Method::make_brdf(Device*, const Surface*, const Meth
 }
 
 std::string Method::query_problem(const Query& query, const Surface* surface) const {
+  if (has_first_order(query) && !traits().first_order)
+    return fmt::format("{} takes no turn of the half vector and no lobe that is not round", name());
+  return own_query_problem(query, surface);
+}
+
+std::string Method::own_query_problem(const Query& query, const Surface* surface) const {
   return host::query_problem(query, surface->width(), surface->height());
 }
 

@@ -34,6 +34,7 @@ struct MethodTraits {
   bool surface_normals =
       false;  ///< its density is that of the map's normals, from which directions are drawn
   bool keeps_tolerance = false;  ///< it takes a relative error to keep: MethodSettings::tolerance
+  bool first_order = false;      ///< half vectors may turn over a footprint, and lobes need not be round
   bool coat = true;              ///< a coat may lie over it
 };
 
@@ -95,7 +96,7 @@ class Method {
                                                const MethodSettings& settings) const;
 
   /// Why a query cannot be answered, or empty when it can. @param surface null without a map.
-  virtual std::string query_problem(const Query& query, const Surface* surface) const;
+  std::string query_problem(const Query& query, const Surface* surface) const;
 
   /// What its answers are held to, or null: it approximates the map and promises nothing. @param map the
   /// oracle of `surface`; both have to outlive the standard, and are null without a map.
@@ -113,6 +114,8 @@ class Method {
                                    const MethodSettings& settings) const;
 
  protected:
+  /// The same but for what the traits exclude already.
+  virtual std::string own_query_problem(const Query& query, const Surface* surface) const;
   [[noreturn]] void refuse_brdf() const;
   [[noreturn]] void refuse_densities() const;
 };

@@ -33,6 +33,8 @@ class MICA_API Method {
   virtual std::vector<MethodNumber> numbers() const { return {}; }
   /// Interpolations that it is right for.
   virtual bool takes(Interpolation) const { return true; }
+  /// Whether it answers where the half vector turns or the lobe is not round; else such queries are refused.
+  virtual bool takes_first_order() const { return false; }
   /// Memory that it needs beside the map, bytes.
   virtual std::size_t bytes(int /*width*/, int /*height*/) const { return 0; }
   /// What it promises: an error relative to the map's density, at most. 0: it approximates, and promises

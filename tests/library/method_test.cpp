@@ -150,6 +150,10 @@ TEST_F(OutsideMethod, IsRefusedWhereItIsWrong) {
   const NormalMap map = NormalMap::generate("spectrum", {{"resolution", 32}});
   const Evaluator negative(Device(), map, "negative", {}, methods);
   EXPECT_THROW(negative.evaluate(std::vector<Query>(1)), DeviceError);
+  Query turning;
+  turning.turn.su = 1;
+  const Evaluator toy(Device(), map, "toy", {}, methods);
+  EXPECT_THROW(toy.evaluate(std::vector<Query>{turning}), UsageError) << "it would not know of the turn";
   EXPECT_EQ(methods.settings_of("toy").size(), 1u);
   EXPECT_THROW(methods.settings_of("none"), UsageError);
 }

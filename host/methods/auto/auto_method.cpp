@@ -21,6 +21,7 @@ class AutoMethod : public Method {
     MethodTraits traits;
     traits.estimates_errors = traits.keeps_tolerance = traits.chooses = true;
     traits.compared = false;
+    traits.first_order = true;
     return traits;
   }
 

@@ -40,7 +40,11 @@ class GaussiansMethod : public Method {
  public:
   std::string name() const override { return "gaussians"; }
   std::string summary() const override { return "a mixture of 4D Gaussians of position and normal [Yan16]"; }
-  MethodTraits traits() const override { return {}; }
+  MethodTraits traits() const override {
+    MethodTraits traits;
+    traits.first_order = true;
+    return traits;
+  }
   bool takes(Interpolation interpolation) const override { return interpolation != Interpolation::bicubic; }
   std::unique_ptr<MethodSettings> settings() const override { return std::make_unique<ElementSettings>(); }
 

@@ -76,7 +76,7 @@ class GridMethod : public Method {
     return std::make_unique<GridBrdf>(*device, glints_of(settings));
   }
 
-  std::string query_problem(const Query& query, const Surface*) const override {
+  std::string own_query_problem(const Query& query, const Surface*) const override {
     return grid_query_problem(query);
   }
 

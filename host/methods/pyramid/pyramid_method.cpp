@@ -12,7 +12,11 @@ class PyramidMethod : public Method {
   std::string summary() const override {
     return "merged elements, whose number does not grow with the footprint";
   }
-  MethodTraits traits() const override { return {}; }
+  MethodTraits traits() const override {
+    MethodTraits traits;
+    traits.first_order = true;
+    return traits;
+  }
 
   StructureSize structure(const StructureAsked& asked, const MethodSettings&) const override {
     return {map_structure_bytes(asked.width, asked.height) + pyramid_levels_bytes(asked.width, asked.height),

@@ -51,6 +51,7 @@ class ReferenceMethod : public Method {
     MethodTraits traits;
     traits.device = traits.jobs = traits.compared = false;
     traits.keeps_tolerance = traits.estimates_errors = true;
+    traits.first_order = true;
     return traits;
   }
 

@@ -12,7 +12,11 @@ class SmoothMethod : public Method {
   std::string summary() const override {
     return "one Beckmann lobe a footprint, with the moments of its slopes: no glints, the baseline";
   }
-  MethodTraits traits() const override { return {}; }
+  MethodTraits traits() const override {
+    MethodTraits traits;
+    traits.first_order = true;
+    return traits;
+  }
   bool takes(Interpolation interpolation) const override { return interpolation != Interpolation::bicubic; }
   std::unique_ptr<MethodSettings> settings() const override { return std::make_unique<ElementSettings>(); }
 

@@ -18,6 +18,7 @@ class TrianglesMethod : public Method {
   MethodTraits traits() const override {
     MethodTraits traits;
     traits.estimates_errors = traits.surface_normals = traits.keeps_tolerance = true;
+    traits.first_order = true;
     return traits;
   }
 
