@@ -31,10 +31,7 @@ std::unique_ptr<PendingDensities> start_by_order(const std::vector<Query>& queri
 StartQueries refuse_first_order(const std::string& method) {
   return [method](const std::vector<Query>&) -> std::unique_ptr<PendingDensities> {
     throw UsageError(
-        fmt::format("{} takes no turn of the half vector and no lobe that is not round", method)); triangles, "
-                    "gaussians, pyramid, smooth, "
-                    "auto and reference do",
-                    method));
+        fmt::format("{} takes no turn of the half vector and no lobe that is not round", method));
   };
 }
 
