@@ -39,7 +39,7 @@ void Film::add(const TracedRows& rows, const std::vector<float>& densities,
   }
 
   write(first_pixel, "R", pixels, [&](std::size_t pixel, float* out) {
-    Eigen::Map<Eigen::Vector3f>(out) = radiance[pixel].cast<float>();
+    Eigen::Map<Eigen::Vector3f>{out} = radiance[pixel].cast<float>();
   });
   for (const Aov& aov : aovs())
     write(first_pixel, aov.channel(0), pixels, [&](std::size_t pixel, float* out) {
