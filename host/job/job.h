@@ -7,6 +7,7 @@
 #include "host/image/image.h"
 #include "host/methods/registry.h"
 #include "host/scene/description.h"
+#include "host/scene/pixel_filter.h"
 #include "host/surface/description.h"
 #include "mica/error.h"
 
@@ -14,7 +15,8 @@ namespace mica::host {
 
 struct ImageSettings {
   int width = 1280, height = 720;
-  int subpixels = 4;              ///< footprints a pixel and axis [Yan14 sec. 3]
+  FilterDescription filter;       ///< of pixels
+  int subpixels = 4;              ///< samples a pixel and axis, where one footprint will not do
   int samples = 16;               ///< directions a subpixel in which light from all around is gathered
   int max_bounces = 1;            ///< reflections of light on its way to the camera, at most
   std::vector<std::string> aovs;  ///< any of ndf, uv, footprint, normal, queries and error

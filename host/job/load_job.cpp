@@ -53,6 +53,11 @@ ImageSettings read_image(TableReader& table) {
   table.read("width", image.width, closed(1, 16384));
   table.read("height", image.height, closed(1, 16384));
   table.read("subpixels", image.subpixels, closed(1, 16));
+  table.read("filter", image.filter.kind);
+  table.read("filter_width", image.filter.width, closed(0.1, 8));
+  if (image.filter.kind == FilterKind::subpixels && image.filter.width > 0)
+    table.report("filter_width",
+                 "found a width of the filter \"subpixels\"; expected one of a filter that has it");
   table.read("samples", image.samples, closed(1, 65536));
   table.read("max_bounces", image.max_bounces, closed(1, 64));
   std::vector<std::string_view> words;

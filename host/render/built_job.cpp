@@ -13,6 +13,8 @@
 namespace mica::host {
 namespace {
 
+constexpr double kResidualOfTolerance =
+    150;                              // measured: FitLimits::residual of 1.5 keeps a relative L2 of 1%
 constexpr double kUnusedAlpha = 0.1;  // of materials that no shape has
 
 /// Beckmann roughness of a map as a whole, for Smith's G: slopes of variance alpha^2 / 2 an axis, and the
@@ -22,6 +24,20 @@ double masking_alpha(const Surface& surface, double roughness) {
   for (const Eigen::Vector2d& s : surface.normals()) sum += s.squaredNorm() / (1 - s.squaredNorm());
   const double slope_variance = sum / static_cast<double>(surface.normals().size());
   return std::sqrt(slope_variance + 2 * roughness * roughness);
+}
+
+/// E[(dn/du)' dn/du] over a map, per uv^2, from the differences of its texels.
+Eigen::Matrix2d normal_change(const Surface& surface) {
+  const int width = surface.width(), height = surface.height();
+  Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      Eigen::Matrix2d change;
+      change << surface.texel(x + 1, y) - surface.texel(x, y), surface.texel(x, y + 1) - surface.texel(x, y);
+      sum += change.transpose() * change;
+    }
+  const Eigen::Vector2d size(width, height);
+  return size.asDiagonal() * (sum / (size.x() * size.y())) * size.asDiagonal();
 }
 
 }  // namespace
@@ -154,13 +170,32 @@ LightGathering BuiltJob::gathering() const {
   return gathering;
 }
 
+PixelSettings BuiltJob::pixels() const {
+  PixelSettings pixels;
+  pixels.subpixels = job_.image.subpixels;
+  pixels.filter = PixelFilter(job_.image.filter);
+  pixels.largest_residual = kResidualOfTolerance * job_.accuracy.tolerance;
+  // Lights gathered from all around are many directions a sample, and no one half vector.
+  const bool may_fit = job_.image.filter.kind != FilterKind::subpixels && !plan_.gathers_light;
+  for (std::size_t n = 0; n < job_.scene.materials.size(); ++n) {
+    const int evaluator = plan_.evaluator_of_material[n];
+    const bool takes = may_fit && evaluator >= 0 && surfaces_[evaluator] &&
+                       plan_.evaluators[evaluator].asks_densities &&
+                       method_of(job_, plan_.evaluators[evaluator]).traits().first_order;
+    pixels.takes_first_order.push_back(takes);
+    pixels.normal_change.push_back(takes ? normal_change(*surfaces_[evaluator])
+                                         : Eigen::Matrix2d(Eigen::Matrix2d::Zero()));
+    pixels.fits = pixels.fits || takes;
+  }
+  return pixels;
+}
+
 Scene BuiltJob::make_scene() {
   const Stopwatch watch;
   SceneDescription description = job_.scene;
   description.camera = camera_at(job_.scene, job_.frames.first);
   description.lights = lights_at(job_.scene, job_.frames.first);
-  Scene scene(description, job_.image.width, job_.image.height, job_.image.subpixels, masking_alphas(),
-              gathering());
+  Scene scene(description, job_.image.width, job_.image.height, pixels(), masking_alphas(), gathering());
   scene_seconds_ = watch.seconds();
   return scene;
 }

@@ -50,6 +50,7 @@ class BuiltJob {
   std::vector<std::optional<Surface>> make_surfaces();
   std::vector<double> masking_alphas() const;
   LightGathering gathering() const;
+  PixelSettings pixels() const;
   double device_seconds_of(std::size_t n) const;
   Scene make_scene();
   std::unique_ptr<Evaluator> make_density_evaluator(std::size_t n);

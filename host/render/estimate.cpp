@@ -60,6 +60,8 @@ Gathered measure_gathering(const BuiltJob& built, Device& device, const std::vec
   TracedRows sample = rows.front();
   sample.points.clear(), sample.lit.clear();
   for (const TracedRows& row : rows) {
+    if (row.sample_radiance.size() > sample.sample_radiance.size())
+      sample.sample_radiance = row.sample_radiance;  // all samples have their place
     append_some(row.points, all, kSamplePoints, &sample.points);
     append_some(row.lit, all, kSamplePoints, &sample.lit);
   }
@@ -147,8 +149,12 @@ Estimate estimate(const Job& job, const Plan& plan, Device& device) {
   const auto of_blocks = [&](const std::vector<std::size_t>& items) {
     return items_of_blocks(items, plan.rows_a_block, job.image.height);
   };
-  const double in_flight = most_bytes_in_flight(of_blocks(sampled.queries), evaluated.bytes_a_query,
-                                                of_blocks(sampled.points), gathered.bytes_a_point);
+  std::vector<double> points = of_blocks(sampled.points);
+  if (plan.gathers_light)  // in batches; see gather_light
+    for (double& block : points)
+      block = std::min(block, static_cast<double>(plan.queries_a_batch) / job.image.samples);
+  const double in_flight = most_bytes_in_flight(of_blocks(sampled.queries), evaluated.bytes_a_query, points,
+                                                gathered.bytes_a_point);
   return {static_cast<std::size_t>(scale * static_cast<double>(sampled.all_queries + gathered.queries)),
           build_seconds + scale * (work + gathered.seconds),
           built.device_bytes() + static_cast<std::size_t>(in_flight)};

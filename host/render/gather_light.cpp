@@ -42,7 +42,7 @@ std::uint64_t seed_of(const BuiltJob& built) {
   return frame == 0 ? built.job().seed : random_bits(built.job().seed, kFrames, frame);
 }
 
-/// Gathers at points [first, last), and adds what they gather to `radiance`, a pixel.
+/// Gathers at points [first, last), and adds what they gather to `radiance`, a sample.
 std::size_t gather(const BuiltJob& built, const TracedRows& rows, std::size_t first, std::size_t last,
                    std::vector<Color>* radiance) {
   const ImageSettings& image = built.job().image;
@@ -52,8 +52,7 @@ std::size_t gather(const BuiltJob& built, const TracedRows& rows, std::size_t fi
   points.reserve(last - first);
   for (std::size_t n = first; n < last; ++n) {
     const LitPoint& point = rows.points[n];
-    const std::uint64_t pixel = static_cast<std::uint64_t>(rows.first_row) * image.width + point.pixel;
-    points.emplace_back(context, point, random_bits(seed, pixel, point.subpixel));
+    points.emplace_back(context, point, random_bits(seed, point.key, point.subpixel));
   }
   tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t n) { points[n].draw(); });
 
@@ -64,7 +63,7 @@ std::size_t gather(const BuiltJob& built, const TracedRows& rows, std::size_t fi
   const bool draws = built.plan().techniques != Techniques::lights;
   for (std::size_t n = 0; n < of_brdf.size(); ++n)
     if (!of_brdf[n].empty()) questions += ask(built.brdf(n), image.samples, draws, of_brdf[n]);
-  for (const GatheredLight& point : points) (*radiance)[point.point().pixel] += point.sum();
+  for (const GatheredLight& point : points) (*radiance)[point.point().sample] += point.sum();
   return questions;
 }
 
@@ -73,14 +72,14 @@ std::size_t gather(const BuiltJob& built, const TracedRows& rows, std::size_t fi
 std::size_t gather_light(const BuiltJob& built, TracedRows* rows) {
   const std::size_t points_a_batch = std::max<std::size_t>(
       1, built.plan().queries_a_batch / static_cast<std::size_t>(built.job().image.samples));
-  std::vector<Color> radiance(rows->radiance.size(), Color::Zero());
+  std::vector<Color> radiance(rows->sample_radiance.size(), Color::Zero());
   std::size_t questions = 0;
   for (std::size_t first = 0; first < rows->points.size(); first += points_a_batch) {
     const std::size_t last = std::min(first + points_a_batch, rows->points.size());
     questions += gather(built, *rows, first, last, &radiance);
   }
-  for (std::size_t pixel = 0; pixel < radiance.size(); ++pixel)
-    rows->radiance[pixel] += radiance[pixel].cast<float>();
+  for (std::size_t sample = 0; sample < radiance.size(); ++sample)
+    rows->sample_radiance[sample] += radiance[sample].cast<float>();
   std::vector<LitPoint>().swap(rows->points);
   return questions;
 }
@@ -98,14 +97,14 @@ std::size_t add_lit_brdfs(const BuiltJob& built, TracedRows* rows) {
     const std::vector<BrdfValue> answers = built.brdf(k).evaluate(queries);
     for (std::size_t n = 0; n < answers.size(); ++n) values[of_brdf[k][n]] = answers[n];
   }
-  std::vector<Color> radiance(rows->radiance.size(), Color::Zero());
+  std::vector<Color> radiance(rows->sample_radiance.size(), Color::Zero());
   for (std::size_t n = 0; n < count; ++n) {
     const LitBrdf& lit = rows->lit[n];
-    radiance[lit.pixel] += values[n].single * lit.weight_single.cast<double>() +
-                           values[n].multiple * lit.weight_multiple.cast<double>();
+    radiance[lit.sample] += values[n].single * lit.weight_single.cast<double>() +
+                            values[n].multiple * lit.weight_multiple.cast<double>();
   }
-  for (std::size_t pixel = 0; pixel < radiance.size(); ++pixel)
-    rows->radiance[pixel] += radiance[pixel].cast<float>();
+  for (std::size_t sample = 0; sample < radiance.size(); ++sample)
+    rows->sample_radiance[sample] += radiance[sample].cast<float>();
   std::vector<LitBrdf>().swap(rows->lit);
   return count;
 }

@@ -6,8 +6,8 @@
 
 namespace mica::host {
 
-/// Adds to `rows->radiance` what the materials reflect of the light from all around and of other surfaces,
-/// and empties `rows->points`.
+/// Adds to `rows->sample_radiance` what the materials reflect of the light from all around and of other
+/// surfaces, and empties `rows->points`.
 ///
 /// At each footprint ImageSettings::samples directions are drawn by where the light comes from, and as many
 /// by where the material reflects it to; both estimate the same integral, and each is weighted by its share
@@ -18,7 +18,7 @@ namespace mica::host {
 /// @return how many questions the materials' BRDFs answered.
 std::size_t gather_light(const BuiltJob& built, TracedRows* rows);
 
-/// Adds to `rows->radiance` the lights of `rows->lit`, and empties it. @return how many they were.
+/// Adds to `rows->sample_radiance` the lights of `rows->lit`, and empties it. @return how many they were.
 std::size_t add_lit_brdfs(const BuiltJob& built, TracedRows* rows);
 
 }  // namespace mica::host

@@ -45,10 +45,9 @@ bool GatheredLight::faces(const Eigen::Vector3d& world) const {
   return world.dot(point_.frame.z) >= kMinCosine && world.dot(point_.frame.face_normal) >= kMinCosine;
 }
 
-/// Of one draw in the mean over the pixel.
+/// Of one draw in the mean over the point's.
 double GatheredLight::share() const {
-  const ImageSettings& image = context_.image;
-  return 1 / (static_cast<double>(image.samples) * image.subpixels * image.subpixels);
+  return 1.0 / context_.image.samples;
 }
 
 /// The share of a draw in the environment's radiance; zero where the point does not see it.

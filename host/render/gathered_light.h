@@ -16,7 +16,7 @@ namespace mica::host {
 /// A direction that was drawn by where light comes from, and that the point sees.
 struct LightDraw {
   Eigen::Vector3d local;  ///< unit, in the point's frame
-  Color radiance;         ///< into the pixel per unit of what reflects it
+  Color radiance;         ///< into the sample per unit of what reflects it
   double pdf;
 };
 
@@ -27,7 +27,7 @@ struct GatheringContext {
   Techniques techniques;
 };
 
-/// Gathers the light that one point reflects into its pixel. Two steps: `draw` does all that needs no answer
+/// Gathers the light that one point reflects into its sample. Two steps: `draw` does all that needs no answer
 /// of the material's BRDF; then the answers are added, in any order that is always the same.
 class GatheredLight {
  public:
@@ -48,7 +48,7 @@ class GatheredLight {
   void add(const LightDraw& draw, const BrdfValue& value);
   void add(const BrdfSample& sample, std::size_t n);
 
-  /// Radiance into the pixel.
+  /// Radiance into the sample.
   const Color& sum() const { return sum_; }
 
  private:

@@ -142,12 +142,17 @@ Plan make_plan(const Job& job) {
   plan.warnings = missing_densities(job, plan);
   plan.queries_a_batch = kQueriesABatch;
   const std::size_t queries_a_row = static_cast<std::size_t>(job.image.width) * job.image.subpixels *
-                                    job.image.subpixels *
-                                    std::max<std::size_t>(job.scene.lights.size() + 2 * plan.samples, 1);
+                                    job.image.subpixels * std::max<std::size_t>(job.scene.lights.size(), 1);
+  // Fewer would trace too much twice: what pixels see of the rows around a block.
+  const std::size_t least_rows = std::min(16, job.image.height);
   plan.rows_a_block =
-      static_cast<int>(std::clamp<std::size_t>(kQueriesABatch / queries_a_row, 1, job.image.height));
+      static_cast<int>(std::clamp<std::size_t>(kQueriesABatch / queries_a_row, least_rows, job.image.height));
 
-  const std::size_t block = plan.rows_a_block * queries_a_row;
+  std::size_t block = plan.rows_a_block * queries_a_row;
+  if (plan.gathers_light)  // of each sample's directions two questions, in batches; see gather_light
+    block += 2 * std::min<std::size_t>(plan.queries_a_batch,
+                                       static_cast<std::size_t>(plan.rows_a_block) * job.image.width *
+                                           job.image.subpixels * job.image.subpixels * plan.samples);
   for (PlannedEvaluator& evaluator : plan.evaluators) {
     plan_structure(job, &evaluator);
     plan.host_bytes += evaluator.host_bytes;

@@ -9,13 +9,14 @@
 
 namespace mica::host {
 
-/// A footprint that gathers light from all around, in a traced subpixel.
+/// A footprint that gathers light from all around, about a sample.
 struct LitPoint {
   Hit hit;
   TangentFrame frame;
   Eigen::Vector3d to_eye;      ///< unit
   Footprint footprint;         ///< in the map's uv
-  std::uint32_t pixel = 0;     ///< row * width + column, from the first traced row
+  std::uint64_t key = 0;       ///< a number for the pixel that it lies in: of the image, row * width + column
+  std::uint32_t sample = 0;    ///< of the lattice
   std::uint32_t subpixel = 0;  ///< in its pixel
   std::uint32_t material = 0;  ///< index into SceneDescription::materials
 };
@@ -23,9 +24,9 @@ struct LitPoint {
 /// A light seen in a footprint whose material is a patch BRDF, with what its two parts are multiplied with.
 struct LitBrdf {
   BrdfQuery query;
-  std::uint32_t pixel = 0;
+  std::uint32_t sample = 0;  ///< of the lattice
   std::uint32_t material = 0;
-  Eigen::Vector3f weight_single = Eigen::Vector3f::Zero();    ///< radiance into the pixel per unit of it
+  Eigen::Vector3f weight_single = Eigen::Vector3f::Zero();    ///< radiance into the sample per unit of it
   Eigen::Vector3f weight_multiple = Eigen::Vector3f::Zero();  ///< the same of light that bounced more often
 };
 

@@ -11,32 +11,57 @@
 #include "host/scene/description.h"
 #include "host/scene/environment.h"
 #include "host/scene/geometry.h"
+#include "host/scene/lattice.h"
 #include "host/scene/lit_point.h"
+#include "host/scene/pixel_filter.h"
 
 namespace mica::host {
 
 /// One light seen in one footprint: the P-NDF to ask for, and what to multiply it with.
 struct GlintQuery {
-  Query query;                 ///< in the map's uv (repeat applied), roughness of the material
-  std::uint32_t pixel = 0;     ///< row * width + column, from the first traced row
-  std::uint32_t material = 0;  ///< index into SceneDescription::materials
-  Eigen::Vector3f weight = Eigen::Vector3f::Zero();  ///< radiance into the pixel per unit of D
+  static constexpr std::uint32_t kNone = Lattice::kNone;
+  Query query;                   ///< in the map's uv (repeat applied), roughness of the material
+  std::uint32_t pixel = kNone;   ///< row * width + column, from the first traced row; kNone lies outside
+  std::uint32_t sample = kNone;  ///< of the lattice; kNone: all of the pixel's
+  std::uint32_t material = 0;    ///< index into SceneDescription::materials
+  Eigen::Vector3f weight = Eigen::Vector3f::Zero();  ///< radiance into the pixel or sample per unit of D
   GlintPoint glints;                                 ///< for the evaluator "grid"; others do not mind it
 };
 
 /// What tracing a block of image rows found. Rows count from the top of the image.
+///
+/// A pixel that was fitted has its light in `radiance` and in queries of its own. All others are sums over
+/// the samples of `lattice`, which have their light in `sample_radiance` and in queries of theirs.
 struct TracedRows {
   int first_row = 0, row_count = 0;
-  std::vector<GlintQuery> queries;  ///< ordered by pixel, subpixel, light: the order in which they are summed
-  std::vector<LitPoint> points;     ///< that gather light, ordered by pixel and subpixel; see LightGathering
-  std::vector<LitBrdf> lit;         ///< lights on materials that are patch BRDFs, ordered as `queries`
-  std::vector<Eigen::Vector3f> radiance;  ///< a pixel: diffuse lobes and background, without glints
-  /// AOVs, a pixel: means over its subpixels that hit a shape; zero where none did.
+  std::vector<GlintQuery>
+      queries;                   ///< ordered by row, pixel, sample, light: the order in which they are summed
+  std::vector<LitPoint> points;  ///< samples that gather light, in the same order; see LightGathering
+  std::vector<LitBrdf> lit;      ///< lights on materials that are patch BRDFs, likewise
+  Lattice lattice;
+  std::vector<std::uint8_t> fitted;              ///< a pixel: 1, or 0 where it is a sum of samples
+  std::vector<Eigen::Vector3f> radiance;         ///< a pixel: of what needs no P-NDF; of fitted ones
+  std::vector<Eigen::Vector3f> sample_radiance;  ///< a sample
+  /// AOVs, a pixel: means over its samples that hit a shape; zero where none did.
   std::vector<Eigen::Vector2f>
       uv;  ///< coordinates in the map, wrapped to [0, 1); a mean across the wrap stays there
   std::vector<Eigen::Vector3f> footprint;  ///< cuu, cuv, cvv in uv^2
   std::vector<Eigen::Vector3f> normal;     ///< geometric normal towards the camera, world space
   std::vector<std::uint16_t> query_count;
+};
+
+/// Adds to `radiance`, a pixel, what pixels that were not fitted see of `sample_radiance`.
+void add_samples(const TracedRows& rows, const std::vector<Eigen::Vector3d>& sample_radiance,
+                 std::vector<Eigen::Vector3d>* radiance);
+
+/// How pixels see.
+struct PixelSettings {
+  int subpixels = 4;  ///< samples a pixel and axis, 1..16, where one footprint will not do
+  PixelFilter filter = PixelFilter({});
+  bool fits = false;                           ///< pixels may be fitted; else all are sums of samples
+  std::vector<bool> takes_first_order;         ///< a material: its method knows turns of the half vector
+  std::vector<Eigen::Matrix2d> normal_change;  ///< a material: E[(dn/du)' dn/du] of its map, per uv^2
+  double largest_residual = 0.1;               ///< of a fit, see FitLimits
 };
 
 /// What a scene hands out for the lights that are gathered by sampling directions.
@@ -48,17 +73,20 @@ struct LightGathering {
 /// Shapes, lights and camera, ready to be traced. Immutable after construction; traced from any number of
 /// threads.
 ///
-/// A pixel is divided evenly into subpixels, with one ray through the centre of each and a Gaussian filter of
-/// standard deviation half a subpixel about it; neither is jittered. A footprint lies on the tangent plane,
-/// in a frame of which x points along +u, y at right angles to it on the side of +v (also where uv is
-/// mirrored) and z along the smooth geometric normal, towards the camera: a surface seen from behind shows
-/// the same map.
+/// Where a pixel and what surrounds it within the filter's reach lie on one surface and in one light, a fit
+/// of second order says which footprints stand for its filter (see PixelFit). Elsewhere pixels are divided
+/// evenly into subpixels, with one ray through the centre of each and a Gaussian about it; their sum is the
+/// filter (see PixelFilter). Rays are not jittered. A footprint lies on the tangent plane, in a frame of
+/// which x points along +u, y at right angles to it on the side of +v (also where uv is mirrored) and z along
+/// the smooth geometric normal, towards the camera: a surface seen from behind shows the same map.
 class Scene {
  public:
-  /// @param width, height image in pixels; @param subpixels footprints a pixel and axis, 1..16.
+  /// @param width, height image in pixels; @param pixels by default: sums of Gaussians of half a subpixel.
   /// @param masking_alpha Beckmann roughness of each material's Smith G [Yan14] Eq. 1, >= 0: from the slopes'
   /// variance of its map and its own roughness; 0.1 for materials that it leaves out. Throws UsageError for
   /// settings that make no sense, FileError for meshes and backgrounds that cannot be used.
+  Scene(const SceneDescription& description, int width, int height, PixelSettings pixels,
+        std::vector<double> masking_alpha = {}, LightGathering gathering = {});
   Scene(const SceneDescription& description, int width, int height, int subpixels,
         std::vector<double> masking_alpha = {}, LightGathering gathering = {});
   ~Scene();

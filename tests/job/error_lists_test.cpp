@@ -31,7 +31,8 @@ TEST(ErrorLists, ReportEverythingInTheOrderOfTheFile) {
       path + ":2:9: image.width: found 0; expected an integer in [1, 16384]\n" +  //
           path + ":3:10: image.height: found \"tall\" (a string); expected an integer in [1, 16384]\n" +
           path +
-          ":4:1: image.colour: found an unknown key; expected one of: width, height, subpixels, samples, "
+          ":4:1: image.colour: found an unknown key; expected one of: width, height, subpixels, filter, "
+          "filter_width, samples, "
           "max_bounces, aovs, exposure, tone_map\n" +
           path +
           ":7:12: shape.0.material: found \"gold\"; expected a table [material.NAME] of that name, and "

@@ -32,7 +32,8 @@ const char* const surface_keys = "resolution, rms_slope, correlation, seed";
 
 const std::vector<Mistake> kUnknownKeys = {
     {"", "[image]\n  @widht = 3",
-     "image.widht: found an unknown key; expected one of: width, height, subpixels, samples, max_bounces, "
+     "image.widht: found an unknown key; expected one of: width, height, subpixels, filter, "
+     "filter_width, samples, max_bounces, "
      "aovs, exposure, tone_map "
      "(did you mean \"width\"?)"},
     {"", "[audit]\n@turbo = 1", "audit.turbo: found an unknown key; expected \"samples\""},

@@ -13,6 +13,7 @@
 #include "host/scene/fresnel.h"
 #include "host/scene/scene.h"
 #include "mica/error.h"
+#include "tests/scene/pixel_radiance.h"
 
 namespace mica::host::scene_test {
 namespace {
@@ -58,8 +59,9 @@ bool same_bits(const std::vector<GlintQuery>& a, const std::vector<GlintQuery>& 
 
 bool same_bits(const TracedRows& a, const TracedRows& b) {
   return a.first_row == b.first_row && a.row_count == b.row_count && same_bits(a.queries, b.queries) &&
-         same_bits(a.radiance, b.radiance) && same_bits(a.uv, b.uv) && same_bits(a.footprint, b.footprint) &&
-         same_bits(a.normal, b.normal) && a.query_count == b.query_count;
+         same_bits(pixel_radiance(a), pixel_radiance(b)) && same_bits(a.uv, b.uv) &&
+         same_bits(a.footprint, b.footprint) && same_bits(a.normal, b.normal) &&
+         a.query_count == b.query_count;
 }
 
 /// Appends the rows of `next`, which follow those of `rows`.
@@ -69,7 +71,9 @@ void append(TracedRows next, TracedRows* rows) {
   const auto add = [](const auto& from, auto* to) { to->insert(to->end(), from.begin(), from.end()); };
   rows->row_count += next.row_count;
   add(next.queries, &rows->queries);
-  add(next.radiance, &rows->radiance);
+  // From here on all pixels have their light, and none of it in samples.
+  add(pixel_radiance(next), &rows->radiance);
+  rows->fitted.resize(rows->radiance.size(), 1);
   add(next.uv, &rows->uv);
   add(next.footprint, &rows->footprint);
   add(next.normal, &rows->normal);
@@ -104,7 +108,7 @@ TEST(Scene, LambertianPlaneReflectsItsAlbedo) {
   description.camera.look_at = {0, 0, 0};
   const TracedRows rows = Scene(description, 16, 9, 2).trace(0, 9);
   const Vector3d expected = Vector3d(0.5 * 3, 0.25 * 2, 0.125 * 1) / kPi * std::cos(kPi / 4);
-  for (const Vector3f& radiance : rows.radiance)
+  for (const Vector3f& radiance : pixel_radiance(rows))
     EXPECT_TRUE(radiance.cast<double>().isApprox(expected, 1e-6));
   for (const Vector3f& normal : rows.normal) EXPECT_TRUE(normal.isApprox(Vector3f::UnitZ()));
 }
@@ -188,7 +192,7 @@ TEST(Scene, SubpixelsShareTheWeightOfAPixel) {
   const auto pixel_weight = [&](int subpixels) {
     Vector3f sum = Vector3f::Zero();
     for (const GlintQuery& query : Scene(description, 16, 9, subpixels).trace(4, 1).queries)
-      sum += query.weight;
+      sum += query.weight / static_cast<float>(subpixels * subpixels);
     return sum;
   };
   EXPECT_TRUE(pixel_weight(1).isApprox(pixel_weight(4), 1e-3f));
@@ -202,6 +206,7 @@ TEST(Scene, ShadowIsWhereTheSphereStandsBeforeTheLight) {
   const int width = 160, height = 90;
   const PinholeCamera camera(description.camera, width, height);
   const TracedRows rows = Scene(description, width, height, 1).trace(0, height);
+  const std::vector<Vector3f> radiance = pixel_radiance(rows);
   int lit = 0, shadowed = 0;
   for (int pixel = 0; pixel < width * height; ++pixel) {
     const CameraRay ray = camera.ray(pixel % width + 0.5, pixel / width + 0.5);
@@ -216,7 +221,7 @@ TEST(Scene, ShadowIsWhereTheSphereStandsBeforeTheLight) {
     if (std::abs(margin) < 1e-4) continue;
     const std::size_t index = static_cast<std::size_t>(pixel);
     EXPECT_EQ(rows.query_count[index], margin > 0 ? 1 : 0) << pixel;
-    EXPECT_EQ(rows.radiance[index].x() > 0, margin > 0) << pixel;
+    EXPECT_EQ(radiance[index].x() > 0, margin > 0) << pixel;
     ++(margin > 0 ? lit : shadowed);
   }
   EXPECT_GT(lit, 1000);
@@ -274,6 +279,7 @@ TEST(Scene, EveryNumberIsInRange) {
       with_shapes({ShellShape{}, PlaneShape{{0, 0, 0}, 1000}, SphereShape{{-1.2, 0, 0.3}, 0.3}});
   description.lights = {PointLight{{2, -2, 4}, {60, 60, 60}}};
   const TracedRows rows = Scene(description, 128, 72, 2).trace(0, 72);
+  const std::vector<Vector3f> radiance = pixel_radiance(rows);
   for (const GlintQuery& query : rows.queries) {
     const Footprint& footprint = query.query.footprint;
     ASSERT_TRUE(footprint.mean_uv.minCoeff() >= 0 && footprint.mean_uv.maxCoeff() < 1);
@@ -285,7 +291,7 @@ TEST(Scene, EveryNumberIsInRange) {
   }
   for (std::size_t pixel = 0; pixel < rows.uv.size(); ++pixel) {
     ASSERT_TRUE(rows.uv[pixel].minCoeff() >= 0 && rows.uv[pixel].maxCoeff() < 1);
-    ASSERT_TRUE(rows.footprint[pixel].allFinite() && rows.radiance[pixel].allFinite());
+    ASSERT_TRUE(rows.footprint[pixel].allFinite() && radiance[pixel].allFinite());
   }
 }
 
@@ -309,9 +315,10 @@ TEST(Scene, BackgroundShowsWhereNothingIsHit) {
   description.camera.look_at = {0, 0, 0};
   description.camera.fov_degrees = 2 * std::atan(1.0 / 5) * 180 / kPi;  // the plane is as high as the image
   const TracedRows rows = Scene(description, 5, 2, 4).trace(0, 2);      // pixel 1 and 3 are half covered
+  const std::vector<Vector3f> radiance = pixel_radiance(rows);
   const float expected[] = {4, 2, 0, 2, 4};
   for (std::size_t pixel = 0; pixel < 10; ++pixel) {
-    EXPECT_NEAR(rows.radiance[pixel].x(), expected[pixel % 5], 1e-6);
+    EXPECT_NEAR(radiance[pixel].x(), expected[pixel % 5], 1e-6);
     EXPECT_EQ(rows.normal[pixel].isZero(), pixel % 5 == 0 || pixel % 5 == 4);
     EXPECT_EQ(rows.query_count[pixel], 0);
   }

@@ -1,0 +1,159 @@
+#include "host/scene/viewer.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "host/microfacet/horizon.h"
+#include "host/scene/coat_crossing.h"
+#include "host/scene/footprint.h"
+#include "host/scene/wrap.h"
+#include "mica/error.h"
+
+namespace mica::host {
+namespace {
+
+std::uint32_t material_index(const SceneDescription& description, std::size_t shape,
+                             const std::string& name) {
+  const auto found = std::find_if(description.materials.begin(), description.materials.end(),
+                                  [&](const MaterialDescription& m) { return m.name == name; });
+  if (found == description.materials.end())
+    throw UsageError(fmt::format("shape {}: there is no material '{}'", shape + 1, name));
+  return static_cast<std::uint32_t>(found - description.materials.begin());
+}
+
+PartMaterials materials_of_parts(const SceneDescription& description, const Geometry& geometry) {
+  PartMaterials materials;
+  for (std::size_t n = 0; n < description.shapes.size(); ++n) {
+    const ShapeDescription& shape = description.shapes[n];
+    const std::vector<std::string>& parts = geometry.parts(n);
+    materials.emplace_back(std::max<std::size_t>(parts.size(), 1),
+                           material_index(description, n, shape.material));
+    for (const PartMaterial& wanted : shape.parts) {
+      const auto part = std::find(parts.begin(), parts.end(), wanted.part);
+      if (part == parts.end())
+        throw UsageError(fmt::format("shape {}: found no part '{}'; its parts are: {}", n + 1, wanted.part,
+                                     parts.empty() ? "none" : fmt::format("{}", fmt::join(parts, ", "))));
+      materials[n][static_cast<std::size_t>(part - parts.begin())] =
+          material_index(description, n, wanted.material);
+    }
+  }
+  return materials;
+}
+
+}  // namespace
+
+StaticScene::StaticScene(const SceneDescription& description)
+    : geometry(description.shapes),
+      background(description.background),
+      environment(description.environments),
+      shows_environment(description.background.is_environment),
+      materials(description.materials),
+      part_materials(materials_of_parts(description, geometry)),
+      glints(description.materials.size()) {
+  for (const MaterialDescription& material : materials)
+    coats.push_back(material.coat ? std::optional<CoatInterface>(*material.coat) : std::nullopt);
+  for (const auto& parts : part_materials)
+    for (const std::uint32_t n : parts)
+      if (materials[n].glints && !glints[n]) glints[n].emplace(materials[n]);
+}
+
+SeenLamp Viewer::see(const LightDescription& light, const SeenPoint& point,
+                     const Eigen::Vector2d& light_sample) const {
+  const TangentFrame& frame = point.frame;
+  SeenLamp lamp;
+  lamp.incident = illuminate(light, point.hit->position);
+  if (!(lamp.incident.irradiance.maxCoeff() > 0)) return lamp;
+  const Eigen::Vector3d& direction = lamp.incident.direction;
+  if (direction.dot(frame.z) < kMinCosine || direction.dot(frame.face_normal) < kMinCosine) return lamp;
+  const LightRay to_light = light_ray(light, point.hit->position, light_sample);
+  if (to_light.direction.dot(frame.face_normal) < kMinCosine) return lamp;
+  if (shared->geometry.occluded(*point.hit, to_light.direction, to_light.distance)) return lamp;
+  lamp.shines = true;
+  lamp.seen = see_lobes(shared->materials[point.material], shared->coats[point.material],
+                        masking_alpha[point.material], frame.z, point.to_eye, lamp.incident);
+  lamp.half_vector = frame.on_disk(lamp.seen.half_vector);
+  return lamp;
+}
+
+SeenPoint Viewer::look(double x, double y, const Eigen::Vector2d& light_sample) const {
+  SeenPoint point;
+  point.ray = camera.ray(x, y);
+  point.hit = shared->geometry.intersect({point.ray.origin, point.ray.direction});
+  if (!point.hit) {
+    point.radiance = shared->far_radiance(point.ray.direction);
+    return point;
+  }
+  const Hit& hit = *point.hit;
+  point.material = shared->part_materials[hit.shape][hit.part];
+  const Eigen::Vector2d& repeat = shared->materials[point.material].repeat;
+  point.to_eye = -point.ray.direction.normalized();
+  point.frame = tangent_frame(hit, point.to_eye);
+  point.uv = hit.uv.cwiseProduct(repeat);
+  point.duv = repeat.asDiagonal() * uv_differentials(point.ray, hit);
+  point.faces_eye = point.frame.face_normal.dot(point.to_eye) >= kMinCosine;
+  if (!point.faces_eye) return point;
+  for (const LightDescription& light : lights) {
+    const SeenLamp& lamp = point.lamps.emplace_back(see(light, point, light_sample));
+    if (lamp.shines) point.radiance += lamp.seen.smooth.cwiseProduct(lamp.incident.irradiance);
+  }
+  return point;
+}
+
+LitBrdf Viewer::lit_brdf(const GlintQuery& query, const SeenPoint& point,
+                         const Illumination& incident) const {
+  LitBrdf lit;
+  const Eigen::Vector3d light = point.frame.to_local(incident.direction);
+  const CoatCrossing crossing(shared->coats[query.material], point.frame.to_local(point.to_eye));
+  lit.query = {query.query.footprint, crossing.view_below(), crossing.below(light), query.query.roughness};
+  lit.sample = query.sample;
+  lit.material = query.material;
+  const Color irradiance = incident.irradiance * crossing.value_scale(light);
+  const BounceFresnel fresnel(shared->materials[query.material].specular, lit.query.view, lit.query.light);
+  lit.weight_single = fresnel.single.cwiseProduct(irradiance).cast<float>();
+  lit.weight_multiple = fresnel.multiple.cwiseProduct(irradiance).cast<float>();
+  return lit;
+}
+
+void Viewer::ask(const SeenPoint& point, double sigma_pixels, const SamplePlace& place,
+                 const std::vector<Eigen::Matrix2d>& turns, RowQueries* queries) const {
+  const std::optional<GlintMaterial>& glints = shared->glints[point.material];
+  const MaterialDescription& material = shared->materials[point.material];
+  GlintQuery query;
+  query.pixel = place.pixel, query.sample = place.sample;
+  query.material = point.material;
+  query.query.footprint = {wrap(point.uv), footprint_covariance(point.duv, sigma_pixels)};
+  std::vector<GlintPlace> places = {
+      {query.query.footprint, point.frame.x, point.frame.y, material.roughness, {}}};
+  if (glints) places = glints->places(point.ray, *point.hit, point.frame, sigma_pixels);
+  query.query.footprint = places.front().footprint;
+  if (gathering.points)
+    queries->points.push_back({*point.hit, point.frame, point.to_eye, query.query.footprint, place.key,
+                               place.sample, place.subpixel, point.material});
+
+  for (std::size_t n = 0; n < point.lamps.size(); ++n) {
+    const SeenLamp& lamp = point.lamps[n];
+    if (!lamp.shines) continue;
+    if (gathering.patch_materials[point.material]) {
+      query.query.roughness = lamp.seen.roughness;
+      queries->lit.push_back(lit_brdf(query, point, lamp.incident));
+      continue;
+    }
+    const Color weight = glints ? glints->weight(*point.hit, places.front(), point.frame, point.to_eye,
+                                                 lamp.seen, lamp.incident.direction)
+                                : lamp.seen.glint_weight;
+    query.weight = weight.cwiseProduct(lamp.incident.irradiance).cast<float>();
+    if (!(query.weight.maxCoeff() > 0)) continue;
+    if (!turns.empty()) query.query.half_vector_turn = turns[n];
+    for (const GlintPlace& here : places) {
+      query.query.footprint = here.footprint;
+      query.query.half_vector = {lamp.seen.half_vector.dot(here.x), lamp.seen.half_vector.dot(here.y)};
+      query.query.roughness = glints ? glints->microroughness(here, lamp.seen) : lamp.seen.roughness;
+      query.glints = here.point;
+      queries->glints.push_back(query);
+    }
+  }
+}
+
+}  // namespace mica::host

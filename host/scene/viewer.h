@@ -1,0 +1,103 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "host/scene/background.h"
+#include "host/scene/camera.h"
+#include "host/scene/coat.h"
+#include "host/scene/environment.h"
+#include "host/scene/geometry.h"
+#include "host/scene/glint_material.h"
+#include "host/scene/lobes.h"
+#include "host/scene/scene.h"
+#include "host/scene/shading.h"
+
+namespace mica::host {
+
+/// Indices of the materials of each shape's parts.
+using PartMaterials = std::vector<std::vector<std::uint32_t>>;
+
+/// What does not change from frame to frame.
+struct StaticScene {
+  Geometry geometry;
+  Background background;
+  Environment environment;
+  bool shows_environment;  ///< where rays hit nothing
+  std::vector<MaterialDescription> materials;
+  std::vector<std::optional<CoatInterface>> coats;  ///< one a material
+  PartMaterials part_materials;
+  std::vector<std::optional<GlintMaterial>> glints;  ///< one a material; only for those that a shape has
+
+  explicit StaticScene(const SceneDescription& description);
+  Color far_radiance(const Eigen::Vector3d& direction) const {
+    return shows_environment ? environment.radiance(direction) : background.radiance(direction);
+  }
+};
+
+/// A lamp seen from a point.
+struct SeenLamp {
+  bool shines =
+      false;  ///< above the horizons, with any power, and not in a shadow; else nothing below is set
+  Illumination incident;
+  LobesSeen seen;
+  Eigen::Vector2d half_vector{0, 0};  ///< on the disk of the point's frame
+};
+
+/// What a ray of the camera meets. Without a hit the radiance is all.
+struct SeenPoint {
+  CameraRay ray;
+  std::optional<Hit> hit;
+  std::uint32_t material = 0;
+  TangentFrame frame;
+  Eigen::Vector3d to_eye;
+  Eigen::Vector2d uv{0, 0};                       ///< of the map, repeat applied, not wrapped
+  Eigen::Matrix2d duv = Eigen::Matrix2d::Zero();  ///< its change a pixel to the right and down
+  bool faces_eye = false;                         ///< else it sends nothing
+  Color radiance = Color::Zero();                 ///< of what needs no P-NDF
+  std::vector<SeenLamp> lamps;                    ///< by light; empty where nothing is lit
+};
+
+/// The queries of rows, each row for itself.
+struct RowQueries {
+  std::vector<GlintQuery> glints;
+  std::vector<LitPoint> points;
+  std::vector<LitBrdf> lit;
+
+  std::size_t size() const { return glints.size() + lit.size(); }
+};
+
+/// Where the queries of a point belong.
+struct SamplePlace {
+  std::uint32_t pixel = 0, sample = 0;  ///< as in GlintQuery
+  std::uint64_t key = 0;                ///< as in LitPoint
+  std::uint32_t subpixel = 0;
+};
+
+/// A scene from one camera under some lights: single rays of it.
+struct Viewer {
+  std::shared_ptr<const StaticScene> shared;
+  PinholeCamera camera;
+  std::vector<double> masking_alpha;  ///< one a material
+  std::vector<LightDescription> lights;
+  LightGathering gathering;
+
+  /// The ray through (x, y), pixels from the left and from the top edge.
+  /// @param light_sample where on a light the shadow ray ends, see light_ray.
+  SeenPoint look(double x, double y, const Eigen::Vector2d& light_sample) const;
+
+  /// Adds what a Gaussian of `sigma_pixels` about a point that faces the eye has to be asked.
+  /// @param turns of the half vector by lamp, per unit of uv; empty: they are constant.
+  void ask(const SeenPoint& point, double sigma_pixels, const SamplePlace& place,
+           const std::vector<Eigen::Matrix2d>& turns, RowQueries* queries) const;
+
+ private:
+  SeenLamp see(const LightDescription& light, const SeenPoint& point,
+               const Eigen::Vector2d& light_sample) const;
+  LitBrdf lit_brdf(const GlintQuery& query, const SeenPoint& point, const Illumination& incident) const;
+};
+
+}  // namespace mica::host
