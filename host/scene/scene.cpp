@@ -13,7 +13,6 @@
 #include "host/microfacet/horizon.h"
 #include "host/scene/background.h"
 #include "host/scene/camera.h"
-#include "host/scene/coat.h"
 #include "host/scene/coat_crossing.h"
 #include "host/scene/footprint.h"
 #include "host/scene/geometry.h"
@@ -173,7 +172,6 @@ struct StaticScene {
   Environment environment;
   bool shows_environment;  ///< where rays hit nothing
   std::vector<MaterialDescription> materials;
-  std::vector<std::optional<CoatInterface>> coats;  ///< one a material
   PartMaterials part_materials;
   std::vector<std::optional<GlintMaterial>> glints;  ///< one a material; only for those that a shape has
 
@@ -189,10 +187,7 @@ StaticScene make_static_scene(const SceneDescription& description) {
                    description.background.is_environment,
                    description.materials,
                    {},
-                   {},
                    {}};
-  for (const MaterialDescription& material : description.materials)
-    made.coats.push_back(material.coat ? std::optional<CoatInterface>(*material.coat) : std::nullopt);
   made.part_materials = materials_of_parts(description, made.geometry);
   made.glints.resize(description.materials.size());
   for (const auto& parts : made.part_materials)
@@ -213,7 +208,7 @@ struct Subpixel {
 struct Scene::Implementation {
   std::shared_ptr<const StaticScene> shared;
   PinholeCamera camera;
-  std::vector<double> masking_alpha;  ///< one a material
+  std::shared_ptr<const LayeredMaterials> layers;
   std::vector<LightDescription> lights;
   LightGathering gathering;
   int width, height, subpixels;
@@ -234,9 +229,10 @@ Scene::Scene(const SceneDescription& description, int width, int height, int sub
   check_lights(description.lights);
   gathering.patch_materials.resize(description.materials.size(), false);
   const PinholeCamera camera(description.camera, width, height);
-  implementation_.reset(new Implementation{
-      std::make_shared<const StaticScene>(make_static_scene(description)), camera, std::move(masking_alpha),
-      description.lights, std::move(gathering), width, height, subpixels});
+  implementation_.reset(
+      new Implementation{std::make_shared<const StaticScene>(make_static_scene(description)), camera,
+                         make_layers(description.materials, masking_alpha), description.lights,
+                         std::move(gathering), width, height, subpixels});
 }
 
 Scene::Scene(std::unique_ptr<Implementation> implementation) : implementation_(std::move(implementation)) {}
@@ -260,23 +256,22 @@ const std::vector<MaterialDescription>& Scene::materials() const {
 std::uint32_t Scene::material_of(const Hit& hit) const {
   return implementation_->shared->part_materials[hit.shape][hit.part];
 }
-const std::optional<CoatInterface>& Scene::coat(std::uint32_t material) const {
-  return implementation_->shared->coats[material];
-}
-double Scene::masking_alpha(std::uint32_t material) const {
-  return implementation_->masking_alpha[material];
+const LayeredMaterial& Scene::layers(std::uint32_t material) const {
+  return (*implementation_->layers)[material];
 }
 
 LitBrdf Scene::Implementation::lit_brdf(const GlintQuery& query, const LitPoint& point,
                                         const Illumination& incident) const {
   LitBrdf lit;
   const Eigen::Vector3d light = point.frame.to_local(incident.direction);
-  const CoatCrossing crossing(shared->coats[query.material], point.frame.to_local(point.to_eye));
+  const LayeredMaterial& material = (*layers)[query.material];
+  const CoatCrossing crossing(material, point.frame.to_local(point.to_eye));
   lit.query = {query.query.footprint, crossing.view_below(), crossing.below(light), query.query.roughness};
   lit.pixel = query.pixel;
   lit.material = query.material;
-  const Color irradiance = incident.irradiance * (crossing.value_scale(light) / (subpixels * subpixels));
-  const BounceFresnel fresnel(shared->materials[query.material].specular, lit.query.view, lit.query.light);
+  const Color irradiance =
+      incident.irradiance.cwiseProduct(crossing.value_scale(light)) / (subpixels * subpixels);
+  const BounceFresnel fresnel(material.material.specular, lit.query.view, lit.query.light);
   lit.weight_single = fresnel.single.cwiseProduct(irradiance).cast<float>();
   lit.weight_multiple = fresnel.multiple.cwiseProduct(irradiance).cast<float>();
   return lit;
@@ -288,20 +283,22 @@ Scene Scene::with_view(const CameraDescription& camera, const std::vector<LightD
   std::vector<double> alphas = masking_alpha;
   complete(&alphas, self.shared->materials.size());
   check_lights(lights);
+  const bool same =
+      std::equal(alphas.begin(), alphas.end(), self.layers->begin(),
+                 [](double alpha, const LayeredMaterial& m) { return alpha == m.masking_alpha; });
   return Scene(std::unique_ptr<Implementation>(
-      new Implementation{self.shared, PinholeCamera(camera, self.width, self.height), std::move(alphas),
-                         lights, self.gathering, self.width, self.height, self.subpixels}));
+      new Implementation{self.shared, PinholeCamera(camera, self.width, self.height),
+                         same ? self.layers : make_layers(self.shared->materials, alphas), lights,
+                         self.gathering, self.width, self.height, self.subpixels}));
 }
 
 Color Scene::Implementation::shade(const CameraRay& ray, const Hit& hit, const Subpixel& subpixel,
                                    PixelMeans* means, RowQueries* queries) const {
   const std::uint32_t material_index = shared->part_materials[hit.shape][hit.part];
   const MaterialDescription& material = shared->materials[material_index];
-  const std::optional<CoatInterface>& coat = shared->coats[material_index];
   const Eigen::Vector3d to_eye = -ray.direction.normalized();
   const TangentFrame frame = tangent_frame(hit, to_eye);
   const Eigen::Matrix2d duv = material.repeat.asDiagonal() * uv_differentials(ray, hit);
-  const double alpha = masking_alpha[material_index];
 
   GlintQuery query;
   query.query.footprint.mean_uv = wrap(hit.uv.cwiseProduct(material.repeat));
@@ -328,7 +325,7 @@ Color Scene::Implementation::shade(const CameraRay& ray, const Hit& hit, const S
     if (to_light.direction.dot(frame.face_normal) < kMinCosine) continue;
     if (shared->geometry.occluded(hit, to_light.direction, to_light.distance)) continue;
 
-    const LobesSeen seen = see_lobes(material, coat, alpha, frame.z, to_eye, incident);
+    const LobesSeen seen = see_lobes((*layers)[material_index], frame.z, to_eye, incident);
     smooth += seen.smooth.cwiseProduct(incident.irradiance);
     if (gathering.patch_materials[material_index]) {
       query.query.half_vector = frame.on_disk(seen.half_vector);
@@ -336,8 +333,7 @@ Color Scene::Implementation::shade(const CameraRay& ray, const Hit& hit, const S
       queries->lit.push_back(lit_brdf(query, point, incident));
       continue;
     }
-    const Color weight = glints ? glints->weight(hit, places.front(), frame, to_eye, seen, incident.direction)
-                                : seen.glint_weight;
+    const Color weight = glints ? glints->weight(hit, places.front(), frame, seen) : seen.glint_weight;
     query.weight = weight.cwiseProduct(incident.irradiance / (subpixels * subpixels)).cast<float>();
     if (!(query.weight.maxCoeff() > 0)) continue;
     for (const GlintPlace& place : places) {

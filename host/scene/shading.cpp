@@ -7,7 +7,6 @@
 
 #include "host/base/constants.h"
 #include "host/microfacet/horizon.h"
-#include "host/microfacet/masking.h"
 #include "host/scene/fresnel.h"
 
 namespace mica::host {
@@ -120,14 +119,6 @@ double half_vector_variance(double light_variance, double cos_d) {
   constexpr double least_cosine = 0.1;  // beyond it the spread is no longer small
   const double across = 1 / std::max(cos_d, least_cosine);
   return light_variance / 4 * (1 + across * across) / 2;
-}
-
-Color glint_weight(const Fresnel& fresnel, double masking_alpha, const Eigen::Vector3d& n,
-                   const Eigen::Vector3d& to_eye, const Eigen::Vector3d& to_light) {
-  const Eigen::Vector3d half = (to_eye + to_light).normalized();
-  const double cos_o = to_eye.dot(n), cos_i = to_light.dot(n);
-  const double G = smith_masking_shadowing(cos_o, cos_i, masking_alpha);
-  return reflectance(fresnel, to_light.dot(half)) * (G / (4 * cos_o));
 }
 
 }  // namespace mica::host
