@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
 
+#include <array>
 #include <cmath>
 #include <cstdio>
 
@@ -10,6 +11,7 @@
 #include "host/methods/evaluator.h"
 #include "host/methods/patch_brdf.h"
 #include "host/methods/registry.h"
+#include "host/surface/interpolate.h"
 #include "host/surface/texel_footprint.h"
 
 namespace mica::host::brute_force_patch_test {
@@ -83,13 +85,22 @@ Seen radiances(const Eigen::Vector3d& from) {
   return {1, lobe({0.8, 0.1, 1}), lobe({-0.4, -0.7, 0.5})};
 }
 
-Eigen::Vector2d gaussian_pair(std::uint64_t stream, std::uint64_t n) {
-  const double radius = std::sqrt(-2 * std::log1p(-random_unit(7, stream, n)));
-  const double turn = 2 * M_PI * random_unit(7, stream + 1, n);
+/// The n-th of points that fill the unit interval evenly together with those of the other streams, moved by a
+/// patch's number. Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018.
+double even_unit(int stream, int patch, int n) {
+  constexpr std::array<double, 4> steps = {0.8566748838545029, 0.733891856627126, 0.6287067210378087,
+                                           0.5385972572236101};
+  const double place = random_unit(7, stream, patch) + steps[stream] * n;
+  return place - std::floor(place);
+}
+
+Eigen::Vector2d gaussian_pair(int stream, int patch, int n) {
+  const double radius = std::sqrt(-2 * std::log1p(-even_unit(stream, patch, n)));
+  const double turn = 2 * M_PI * even_unit(stream + 1, patch, n);
   return radius * Eigen::Vector2d(std::cos(turn), std::sin(turn));
 }
 
-/// A point of the surface, whose normal the roughness blurs.
+/// A point of the surface, whose normal, that of the map, the roughness blurs.
 struct Point {
   Eigen::Vector2d place;
   Eigen::Vector3d normal;
@@ -97,12 +108,13 @@ struct Point {
   double projected(const Eigen::Vector3d& direction) const { return direction.dot(normal) / normal.z(); }
 };
 
-std::vector<Point> points_under(const Heights& heights, const Eigen::Vector2d& middle, double sigma) {
+std::vector<Point> points_under(const Surface& surface, const Eigen::Vector2d& middle, double sigma,
+                                int patch) {
   constexpr int count = 6000;
   std::vector<Point> points;
   for (int n = 0; n < count; ++n) {
-    const Eigen::Vector2d place = middle + sigma * gaussian_pair(0, n);
-    const Eigen::Vector2d s = disk_of(heights.slope(place)) + kRoughness * gaussian_pair(2, n);
+    const Eigen::Vector2d place = middle + sigma * gaussian_pair(0, patch, n);
+    const Eigen::Vector2d s = normal_at(surface, place) + kRoughness * gaussian_pair(2, patch, n);
     if (s.squaredNorm() < 1)
       points.push_back({place, Eigen::Vector3d(s.x(), s.y(), std::sqrt(1 - s.squaredNorm()))});
   }
@@ -178,7 +190,7 @@ Seen excess(double sigma, double degrees, bool displaced) {
     const Eigen::Vector2d middle(kSize * random_unit(9, 0, n), kSize * random_unit(9, 1, n));
     found +=
         by_brdf(brdf.get(), {make_footprint(surface, middle / kSize, sigma, sigma, 0), view, kRoughness});
-    expected += by_brute_force(heights, points_under(heights, middle, sigma), view, displaced);
+    expected += by_brute_force(heights, points_under(surface, middle, sigma, n), view, displaced);
   }
   const Seen result = found / expected - 1;
   std::printf("sigma %g, %g degrees: %+.4f %+.4f %+.4f\n", sigma, degrees, result(0), result(1), result(2));
