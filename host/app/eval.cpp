@@ -151,7 +151,9 @@ void add_eval(CommandLine& app, Command* chosen, const MethodRegistry& methods) 
       "A row that cannot be evaluated is named, and nothing is written.\n"
       "Other quantities, of evaluators with a BRDF of their own, have directions in place of s t, of any\n"
       "length but 0, z along the geometric normal g; below the horizon nothing is seen and all is 0:\n"
-      "  brdf    u v cuu cuv cvv ox oy oz ix iy iz [roughness] -> f(o, i) max(i.g, 0), without Fresnel\n"
+      "  brdf    u v cuu cuv cvv ox oy oz ix iy iz [roughness] -> f(o, i) times the light's cosine (i.g; "
+      "beckmanns: the "
+      "patch's own), without Fresnel\n"
       "  energy  u v cuu cuv cvv ox oy oz [roughness] -> what a white patch scatters at once, and what it "
       "loses\n"
       "  sample  u v cuu cuv cvv ox oy oz [roughness] -> ix iy iz pdf weight; pdf 0: nothing was drawn");

@@ -129,9 +129,6 @@ std::vector<MaterialDescription> read_materials(TableReader& job,
     table.read_table("specular", [&](TableReader& specular) { material.specular = read_specular(specular); });
     table.read("diffuse", material.diffuse, kReflectance);
     table.read_table("coat", [&](TableReader& coat) { material.coat = read_coat(coat); });
-    if (material.coat && !method.traits().coat)
-      table.report("coat",
-                   fmt::format("found one on {}; expected none, or an ndf with a density", material.ndf));
     materials.push_back(std::move(material));
   });
   return materials;

@@ -35,7 +35,6 @@ struct MethodTraits {
       false;  ///< its density is that of the map's normals, from which directions are drawn
   bool keeps_tolerance = false;  ///< it takes a relative error to keep: MethodSettings::tolerance
   bool first_order = false;      ///< half vectors may turn over a footprint, and lobes need not be round
-  bool coat = true;              ///< a coat may lie over it
 };
 
 /// What a method would build on a surface.

@@ -9,10 +9,12 @@
 
 namespace mica::host {
 
-/// What a patch BRDF answers to a BrdfQuery. Light that bounced once takes Fresnel's factor at the half
+/// What a patch BRDF answers to a BrdfQuery: radiance to the view by unit radiance from the light, a
+/// steradian. The cosine in it is that of the model: i.g, or the projected area of what the footprint sees
+/// (`beckmanns`). Light that bounced once takes Fresnel's factor at the half
 /// vector; light that bounced more often takes one of its own, so the parts are kept apart.
 struct BrdfValue {
-  float single = 0;    ///< f_P(o, i) max(i.g, 0) of light that bounced once, without Fresnel
+  float single = 0;    ///< f_P(o, i) times the patch's cosine, of light that bounced once, without Fresnel
   float multiple = 0;  ///< the same of light that bounced more often; 0 for models without it
   float pdf = 0;       ///< with which `sample` draws i, per steradian
 };
@@ -23,7 +25,7 @@ struct Albedo {
   float lost = 0;    ///< what one bounce loses
 };
 
-/// A direction drawn with the density `pdf` per steradian. Weights are f_P max(i.g, 0) / pdf.
+/// A direction drawn with the density `pdf` per steradian. Weights are `evaluate`'s parts over it.
 struct BrdfSample {
   Eigen::Vector3f light = Eigen::Vector3f::Zero();
   float pdf = 0;  ///< 0: nothing was drawn (the direction fell below the horizon); weights are 0 then

@@ -181,4 +181,19 @@ double BeckmannMixture::visible_area(const std::vector<SlopeLobe>& lobes, const 
   return sum;
 }
 
+double BeckmannMixture::projected_area(const std::vector<SlopeLobe>& lobes,
+                                       const Eigen::Vector3d& direction) {
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  for (const SlopeLobe& lobe : lobes) mean += lobe.weight * lobe.mean;
+  return std::max(direction.z() - mean.dot(direction.head<2>()), 0.0);
+}
+
+double BeckmannMixture::scattering(const std::vector<SlopeLobe>& lobes, const Eigen::Vector3d& view,
+                                   const Eigen::Vector3d& light) {
+  const Eigen::Vector3d half = (view + light).normalized();
+  const double G1_light = projected_area(lobes, light) / visible_area(lobes, light);
+  // G1(o) / A_P(o) is one over the visible area, also where the patch turns away from the view.
+  return G1_light * density(lobes, half.head<2>()) / (4 * visible_area(lobes, view));
+}
+
 }  // namespace mica::host::reference

@@ -37,6 +37,15 @@ class BeckmannMixture {
   /// @param direction unit, above the horizon.
   static double visible_area(const std::vector<SlopeLobe>& lobes, const Eigen::Vector3d& direction);
 
+  /// A_P(w), of [Che18] Eq. 17 without the clamps of single lobes: what the patch's mean normal shows a
+  /// direction, >= 0.
+  static double projected_area(const std::vector<SlopeLobe>& lobes, const Eigen::Vector3d& direction);
+
+  /// F G2 D / (4 A_P(o)) without Fresnel's factor F: radiance to `view` by unit radiance from `light`, a
+  /// steradian. G2 = G1(o) G1(i), [Che18] Eq. 16. @param view, light unit, above the horizon.
+  static double scattering(const std::vector<SlopeLobe>& lobes, const Eigen::Vector3d& view,
+                           const Eigen::Vector3d& light);
+
  private:
   long width_, height_;  // elements
   double corner_;        // where element (0, 0) is, in elements

@@ -163,9 +163,7 @@ LightGathering BuiltJob::gathering() const {
   LightGathering gathering{plan_.gathers_light, {}};
   for (std::size_t n = 0; n < job_.scene.materials.size(); ++n) {
     const int evaluator = plan_.evaluator_of_material[n];
-    // A coat bends directions before they reach the patch, and is made for densities.
-    gathering.patch_materials.push_back(evaluator >= 0 && plan_.evaluators[evaluator].patch_brdf &&
-                                        !job_.scene.materials[n].coat);
+    gathering.patch_materials.push_back(evaluator >= 0 && plan_.evaluators[evaluator].patch_brdf);
   }
   return gathering;
 }

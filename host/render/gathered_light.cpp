@@ -33,12 +33,11 @@ Color mean_color(const MaterialDescription& material) {
 GatheredLight::GatheredLight(const GatheringContext& context, const LitPoint& point, std::uint64_t key)
     : context_(context),
       point_(point),
-      material_(context.scene.materials()[point.material]),
+      material_(context.scene.layers(point.material).material),
       key_(key),
       view_(point.frame.to_local(point.to_eye)),
-      crossing_(context.scene.coat(point.material), view_),
-      smooth_(material_, context.scene.coat(point.material), context.scene.masking_alpha(point.material),
-              SmoothMaterial::Lobes::without_normals),
+      crossing_(context.scene.layers(point.material), view_),
+      smooth_(context.scene.layers(point.material), SmoothMaterial::Lobes::without_normals),
       tint_(mean_color(material_)) {}
 
 bool GatheredLight::faces(const Eigen::Vector3d& world) const {
@@ -111,8 +110,10 @@ void GatheredLight::add(const LightDraw& draw, const BrdfValue& value) {
   const BounceFresnel fresnel(material_.specular, crossing_.view_below(), crossing_.below(draw.local));
   const Color reflected = value.single * fresnel.single + value.multiple * fresnel.multiple;
   const double pdf = uses_brdf() ? value.pdf * crossing_.density_scale(draw.local) : 0;
-  sum_ += tint_.cwiseProduct(reflected).cwiseProduct(draw.radiance) *
-          (crossing_.value_scale(draw.local) / (draw.pdf + pdf));
+  sum_ += tint_.cwiseProduct(reflected)
+              .cwiseProduct(draw.radiance)
+              .cwiseProduct(crossing_.value_scale(draw.local)) /
+          (draw.pdf + pdf);
 }
 
 void GatheredLight::add(const BrdfSample& sample, std::size_t n) {
@@ -124,7 +125,8 @@ void GatheredLight::add(const BrdfSample& sample, std::size_t n) {
   if (radiance.isZero(0)) return;
   const BounceFresnel fresnel(material_.specular, crossing_.view_below(), below);
   const Color weight = sample.weight_single * fresnel.single + sample.weight_multiple * fresnel.multiple;
-  sum_ += tint_.cwiseProduct(weight).cwiseProduct(radiance) * (crossing_.value_scale(local) / density_scale);
+  sum_ += tint_.cwiseProduct(weight).cwiseProduct(radiance).cwiseProduct(crossing_.value_scale(local)) /
+          density_scale;
 }
 
 }  // namespace mica::host

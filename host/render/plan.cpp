@@ -77,7 +77,7 @@ int evaluator_for(const Job& job, int material_index, Plan* plan) {
     planned->push_back(plan_evaluator(job, surface_index, material_index, plan->gathers_light));
   PlannedEvaluator& used = (*planned)[static_cast<std::size_t>(index)];
   used.materials.push_back(material.name);
-  used.asks_densities |= !used.patch_brdf || material.coat.has_value();
+  used.asks_densities |= !used.patch_brdf;
   return index;
 }
 

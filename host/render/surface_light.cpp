@@ -66,10 +66,8 @@ Color surface_light(const Scene& scene, Ray ray, int bounces, std::uint64_t key)
     const TangentFrame frame = tangent_frame(*hit, to_eye);
     if (frame.face_normal.dot(to_eye) < kMinCosine) break;
     const std::uint32_t material = scene.material_of(*hit);
-    const Vertex vertex{
-        scene, *hit, frame, frame.to_local(to_eye),
-        SmoothMaterial(scene.materials()[material], scene.coat(material), scene.masking_alpha(material),
-                       SmoothMaterial::Lobes::with_smooth_normals)};
+    const Vertex vertex{scene, *hit, frame, frame.to_local(to_eye),
+                        SmoothMaterial(scene.layers(material), SmoothMaterial::Lobes::with_smooth_normals)};
     sum += throughput.cwiseProduct(light_of_lamps(vertex) +
                                    light_of_environment(vertex, {random(0), random(1)}));
 

@@ -1,38 +1,30 @@
 #include "host/scene/coat.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
 #include "host/base/constants.h"
+#include "host/microfacet/circle_share.h"
+#include "host/microfacet/masking.h"
 #include "host/scene/fresnel.h"
 
 namespace mica::host {
 namespace {
 
-/// Reflectance of the interface for diffuse light from outside: 2 int F(c) c dc, by the midpoint rule.
-double outer_reflectance(double ior) {
-  constexpr int steps = 4096;
-  double sum = 0;
-  for (int n = 0; n < steps; ++n) {
-    const double cosine = (n + 0.5) / steps;
-    sum += 2 * cosine * dielectric_reflectance(cosine, ior);
-  }
-  return sum / steps;
-}
+/// Axes of the plane of incidence, right-handed about a direction in it: in the plane, and across.
+struct IncidenceAxes {
+  Eigen::Vector3d across;
 
-/// Density of a Beckmann distribution of normals over projected area. @param alpha2 its roughness squared.
-double beckmann(double cosine, double alpha2) {
-  if (cosine <= 0) return 0;
-  const double cos2 = cosine * cosine;
-  return std::exp((1 - 1 / cos2) / alpha2) / (kPi * alpha2 * cos2 * cos2);
-}
+  IncidenceAxes(const Eigen::Vector3d& n, const Eigen::Vector3d& to_eye)
+      : across(n.cross(to_eye).norm() > 1e-9 ? n.cross(to_eye).normalized() : n.unitOrthogonal()) {}
+  /// Of a small difference from `about`.
+  Eigen::Vector2d operator()(const Eigen::Vector3d& difference, const Eigen::Vector3d& about) const {
+    return {difference.dot(across.cross(about)), difference.dot(across)};
+  }
+};
 
 }  // namespace
-
-CoatInterface::CoatInterface(const CoatDescription& coat)
-    : coat_(coat),
-      // As much light crosses one way as the other, over n^2 times the solid angle.
-      inner_reflectance_(1 - (1 - outer_reflectance(coat.ior)) / (coat.ior * coat.ior)) {}
 
 Eigen::Vector3d CoatInterface::refracted(const Eigen::Vector3d& direction, const Eigen::Vector3d& n) const {
   const double cosine = direction.dot(n);
@@ -45,27 +37,34 @@ double CoatInterface::crossing(double cos_o, double cos_i) const {
          (coat_.ior * coat_.ior);
 }
 
-Color CoatInterface::diffuse(const Color& albedo, double cos_o, double cos_i) const {
-  const Color all_bounces = (albedo.array() / (1 - inner_reflectance_ * albedo.array())).matrix();
-  return crossing(cos_o, cos_i) / kPi * all_bounces;
-}
-
-Color CoatInterface::glint_weight(const Fresnel& fresnel, double masking_alpha, const Eigen::Vector3d& n,
-                                  const Eigen::Vector3d& to_eye, const Eigen::Vector3d& to_light) const {
-  const Eigen::Vector3d eye_below = refracted(to_eye, n), light_below = refracted(to_light, n);
-  // The weight below holds the cosine inside the coat; irradiance is that outside.
-  const double cosines = to_light.dot(n) / light_below.dot(n);
-  return crossing(to_eye.dot(n), to_light.dot(n)) * cosines *
-         mica::host::glint_weight(fresnel, masking_alpha, n, eye_below, light_below);
-}
-
+/// Facets have Gaussian slopes; a light with an extent is a disk about `to_light`. The eye sees the share of
+/// the facets that mirror some of it: of a smooth coat all or none, and a rough one's where the half vector
+/// is. Lengths are halves of those by which the mirror image of the eye turns: by as much as a facet turns in
+/// the plane of incidence, and cos_d times as much across it.
 double CoatInterface::reflection(const Eigen::Vector3d& n, const Eigen::Vector3d& to_eye,
                                  const Eigen::Vector3d& to_light, double light_variance) const {
-  const double alpha2 = 2 * (coat_.roughness * coat_.roughness + light_variance);
-  const double cosine = (to_eye + to_light).normalized().dot(n);
-  return mica::host::glint_weight(DielectricFresnel{coat_.ior}, std::sqrt(2.0) * coat_.roughness, n, to_eye,
-                                  to_light)[0] *
-         beckmann(cosine, alpha2);
+  const double variance = coat_.roughness * coat_.roughness, cos_o = to_eye.dot(n);
+  const Eigen::Vector3d half = (to_eye + to_light).normalized();
+  if (half.dot(n) <= 0) return 0;
+  const Eigen::Vector3d slope = half / half.dot(n) - n;
+  // Slopes of the facets that mirror some of a disk: no steeper than facets are, on average.
+  const double share = variance / (variance + light_variance);
+  const double cos_m = 1 / std::sqrt(1 + share * share * slope.squaredNorm());
+  const double cos_d = std::clamp(to_eye.dot(n + share * slope) * cos_m, 1e-6, 1.0);
+  const double G = smith_masking_shadowing(cos_o, to_light.dot(n), std::sqrt(2.0) * coat_.roughness);
+  const double scale =
+      dielectric_reflectance(cos_d, coat_.ior) * G / (4 * cos_o * cos_m * cos_m * cos_m * cos_m);
+  if (light_variance < 1e-3 * variance)  // beside which slopes alone are seen: [Yan14] Eq. 1
+    return scale * std::exp(-slope.squaredNorm() / (2 * variance)) / (2 * kPi * variance);
+
+  const IncidenceAxes axes(n, to_eye);
+  const Eigen::Vector3d mirrored = 2 * cos_o * n - to_eye;
+  const Eigen::Vector2d turned = axes(slope, n).cwiseProduct(Eigen::Vector2d(1, cos_d)),
+                        missed = axes(to_light - mirrored, mirrored) / 2;
+  const double radius = std::sqrt(light_variance);  // half of the disk's, of which the variance is a quarter
+  return scale * cos_d / (kPi * light_variance) *
+         share_in_unit_circle((share * turned + (1 - share) * missed) / radius,
+                              coat_.roughness / radius * Eigen::Vector2d(1, cos_d));
 }
 
 }  // namespace mica::host

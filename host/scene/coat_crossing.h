@@ -1,9 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <optional>
 
-#include "host/scene/coat.h"
+#include "host/scene/layered_material.h"
 
 namespace mica::host {
 
@@ -11,8 +10,8 @@ namespace mica::host {
 /// frame; without a coat above and below are the same.
 class CoatCrossing {
  public:
-  /// @param coat must outlive this; @param view above the horizon.
-  CoatCrossing(const std::optional<CoatInterface>& coat, const Eigen::Vector3d& view);
+  /// @param layers must outlive this; @param view above the horizon.
+  CoatCrossing(const LayeredMaterial& layers, const Eigen::Vector3d& view);
 
   const Eigen::Vector3d& view_below() const { return view_below_; }
   Eigen::Vector3d below(const Eigen::Vector3d& light) const;
@@ -21,14 +20,15 @@ class CoatCrossing {
   /// there.
   Eigen::Vector3d above(const Eigen::Vector3d& light_below) const;
 
-  /// What f_r max(i.g, 0) of the BRDF is multiplied with, above.
-  double value_scale(const Eigen::Vector3d& light) const;
+  /// What the BRDF's answer, its cosine within, is multiplied with above: crossings, and the light that goes
+  /// to and fro.
+  Color value_scale(const Eigen::Vector3d& light) const;
 
   /// What a density of directions below is multiplied with, above: d below / d light.
   double density_scale(const Eigen::Vector3d& light) const;
 
  private:
-  const std::optional<CoatInterface>& coat_;
+  const LayeredMaterial& layers_;
   Eigen::Vector3d view_, view_below_;
 };
 

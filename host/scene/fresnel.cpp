@@ -24,6 +24,13 @@ struct Reflectance {
   Color operator()(const ColorFresnel& f) const { return schlick_reflectance(cos_i, f.color); }
 };
 
+struct Below {
+  double ior;
+  Fresnel operator()(const ConductorFresnel& f) const { return ConductorFresnel{f.eta / ior, f.k / ior}; }
+  Fresnel operator()(const DielectricFresnel& f) const { return DielectricFresnel{f.ior / ior}; }
+  Fresnel operator()(const ColorFresnel& f) const { return f; }
+};
+
 }  // namespace
 
 double dielectric_reflectance(double cos_i, double ior) {
@@ -51,6 +58,10 @@ double conductor_reflectance(double cos_i, double eta, double k) {
 
 Color reflectance(const Fresnel& fresnel, double cos_i) {
   return std::visit(Reflectance{std::clamp(cos_i, 0.0, 1.0)}, fresnel);
+}
+
+Fresnel below(const Fresnel& fresnel, double ior) {
+  return std::visit(Below{ior}, fresnel);
 }
 
 }  // namespace mica::host

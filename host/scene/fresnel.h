@@ -14,4 +14,8 @@ double conductor_reflectance(double cos_i, double eta, double k);
 /// Reflectance of each channel.
 Color reflectance(const Fresnel& fresnel, double cos_i);
 
+/// The same boundary towards its medium from one of index `ior` in place of air. Schlick's colour is that
+/// seen from whatever lies above.
+Fresnel below(const Fresnel& fresnel, double ior);
+
 }  // namespace mica::host

@@ -6,7 +6,6 @@
 
 #include "host/microfacet/glint_masking.h"
 #include "host/scene/footprint.h"
-#include "host/scene/fresnel.h"
 
 namespace mica::host {
 namespace {
@@ -115,18 +114,11 @@ void GlintMaterial::split_by_plane(const CameraRay& ray, const Hit& hit, const T
 }
 
 Color GlintMaterial::weight(const Hit& hit, const GlintPlace& place, const TangentFrame& frame,
-                            const Eigen::Vector3d& to_eye, const LobesSeen& seen,
-                            const Eigen::Vector3d& to_light) const {
-  const auto in_frame = [&](const Eigen::Vector3d& omega) {
-    return Eigen::Vector3d(omega.dot(frame.x), omega.dot(frame.y), omega.dot(frame.z));
-  };
-  Color reflected = seen.glint_weight;
-  if (!material_.coat) {
-    const Eigen::Vector2d alpha(place.point.alpha_x, place.point.alpha_y);
-    const double G = glint_masking(glints_, alpha, in_frame(to_eye), in_frame(to_light));
-    reflected =
-        reflectance(material_.specular, to_light.dot(seen.half_vector)) * (G / (4 * to_eye.dot(frame.z)));
-  }
+                            const LobesSeen& seen) const {
+  const Eigen::Vector2d alpha(place.point.alpha_x, place.point.alpha_y);
+  const Eigen::Vector3d view = frame.to_local(seen.to_eye), light = frame.to_local(seen.to_light);
+  const double G = glint_masking(glints_, alpha, view, light);
+  const Color reflected = seen.mirrored * (G / (4 * view.z()));
   return color_ ? reflected.cwiseProduct(color_->at(hit.uv).cwiseMax(0).cwiseMin(1)) : reflected;
 }
 

@@ -37,10 +37,9 @@ class GlintMaterial {
 
   /// What D is multiplied with, besides the light's irradiance: Fresnel, masking and the texture of the
   /// reflection's colour.
-  /// @param place any of those of `hit`; @param seen by the eye from the light, whose weight stands for
-  /// glints below a coat.
+  /// @param place any of those of `hit`; @param seen by the eye from the light.
   Color weight(const Hit& hit, const GlintPlace& place, const TangentFrame& frame,
-               const Eigen::Vector3d& to_eye, const LobesSeen& seen, const Eigen::Vector3d& to_light) const;
+               const LobesSeen& seen) const;
 
   /// The microroughness that a query asks with: the light's extent widens it.
   double microroughness(const GlintPlace& place, const LobesSeen& seen) const;

@@ -1,6 +1,8 @@
 #include "host/scene/keyframes.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 
 namespace mica::host {
 namespace {
@@ -10,11 +12,20 @@ Value mix(const Value& a, const Value& b, double share) {
   return (1 - share) * a + share * b;
 }
 
+/// From one direction to another, of any lengths, at constant speed; opposite ones over one of those across.
+Eigen::Vector3d turn(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double share) {
+  const Eigen::Vector3d a = from.stableNormalized(), b = to.stableNormalized();
+  const Eigen::Vector3d rest = b - a.dot(b) * a;
+  const double angle = share * std::atan2(rest.norm(), a.dot(b));
+  const Eigen::Vector3d across = rest.norm() > 1e-9 ? rest.normalized() : a.unitOrthogonal();
+  return std::cos(angle) * a + std::sin(angle) * across;
+}
+
 CameraDescription between(const CameraDescription& a, const CameraDescription& b, double share) {
   CameraDescription camera = a;
   camera.position = mix(a.position, b.position, share);
   camera.look_at = mix(a.look_at, b.look_at, share);
-  camera.up = mix(a.up, b.up, share);
+  camera.up = turn(a.up, b.up, share);
   camera.fov_degrees = mix(a.fov_degrees, b.fov_degrees, share);
   return camera;
 }
@@ -24,7 +35,7 @@ PointLight between(const PointLight& a, const PointLight& b, double share) {
 }
 
 DirectionalLight between(const DirectionalLight& a, const DirectionalLight& b, double share) {
-  return {mix(a.direction, b.direction, share), mix(a.irradiance, b.irradiance, share)};
+  return {turn(a.direction, b.direction, share), mix(a.irradiance, b.irradiance, share)};
 }
 
 SphereLight between(const SphereLight& a, const SphereLight& b, double share) {
@@ -33,7 +44,7 @@ SphereLight between(const SphereLight& a, const SphereLight& b, double share) {
 }
 
 DiskLight between(const DiskLight& a, const DiskLight& b, double share) {
-  return {mix(a.position, b.position, share), mix(a.direction, b.direction, share),
+  return {mix(a.position, b.position, share), turn(a.direction, b.direction, share),
           mix(a.radius, b.radius, share), mix(a.intensity, b.intensity, share)};
 }
 

@@ -7,6 +7,7 @@
 namespace mica::host {
 
 // What moves, at one frame: linear between its keyframes, still before the first and after the last.
+// Directions turn at constant speed, whatever their lengths.
 
 CameraDescription camera_at(const SceneDescription& scene, double frame);
 

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "host/base/constants.h"
 #include "host/microfacet/horizon.h"
+#include "host/microfacet/masking.h"
+#include "host/scene/fresnel.h"
 
 namespace mica::host {
 namespace {
@@ -17,39 +18,28 @@ double widened(double roughness, double half_variance) {
                            : roughness;
 }
 
-LobesSeen see_bare(const MaterialDescription& material, double masking_alpha, const Eigen::Vector3d& n,
-                   const Eigen::Vector3d& to_eye, const Illumination& incident) {
-  const Eigen::Vector3d& to_light = incident.direction;
-  const Eigen::Vector3d half = (to_eye + to_light).normalized();
-  const double variance = half_vector_variance(incident.variance, to_light.dot(half));
-  return {material.diffuse / kPi * to_light.dot(n), half, widened(material.roughness, variance),
-          glint_weight(material.specular, masking_alpha, n, to_eye, to_light)};
-}
-
-LobesSeen see_coated(const MaterialDescription& material, const CoatInterface& coat, double masking_alpha,
-                     const Eigen::Vector3d& n, const Eigen::Vector3d& to_eye, const Illumination& incident) {
-  const Eigen::Vector3d& to_light = incident.direction;
-  const double cos_o = std::max(to_eye.dot(n), kMinCosine), cos_i = to_light.dot(n);
-  const Eigen::Vector3d light_below = coat.refracted(to_light, n);
-  const Eigen::Vector3d half_below = (coat.refracted(to_eye, n) + light_below).normalized();
-  // Refraction makes a small light smaller by the index.
-  const double variance_below =
-      half_vector_variance(incident.variance / (coat.ior() * coat.ior()), light_below.dot(half_below));
-  const double variance =
-      half_vector_variance(incident.variance, to_light.dot((to_eye + to_light).normalized()));
-  const Color smooth = coat.diffuse(material.diffuse, cos_o, cos_i) * cos_i +
-                       Color::Constant(coat.reflection(n, to_eye, to_light, variance));
-  return {smooth, half_below, widened(material.roughness, variance_below),
-          coat.glint_weight(material.specular, masking_alpha, n, to_eye, to_light)};
-}
-
 }  // namespace
 
-LobesSeen see_lobes(const MaterialDescription& material, const std::optional<CoatInterface>& coat,
-                    double masking_alpha, const Eigen::Vector3d& n, const Eigen::Vector3d& to_eye,
+LobesSeen see_lobes(const LayeredMaterial& layers, const Eigen::Vector3d& n, const Eigen::Vector3d& to_eye,
                     const Illumination& incident) {
-  return coat ? see_coated(material, *coat, masking_alpha, n, to_eye, incident)
-              : see_bare(material, masking_alpha, n, to_eye, incident);
+  const double cos_o = std::max(to_eye.dot(n), kMinCosine), cos_i = incident.direction.dot(n);
+  const double ior = layers.coat ? layers.coat->ior() : 1;
+  LobesSeen seen;
+  seen.smooth = layers.energy.diffuse(cos_o, cos_i) * cos_i;
+  if (layers.coat)
+    seen.smooth.array() += layers.coat->reflection(n, to_eye, incident.direction, incident.variance);
+  seen.to_eye = layers.coat ? layers.coat->refracted(to_eye, n) : to_eye;
+  seen.to_light = layers.coat ? layers.coat->refracted(incident.direction, n) : incident.direction;
+  seen.half_vector = (seen.to_eye + seen.to_light).normalized();
+  // Refraction makes a small light smaller by the index.
+  const double cos_d = seen.to_light.dot(seen.half_vector);
+  seen.roughness =
+      widened(layers.material.roughness, half_vector_variance(incident.variance / (ior * ior), cos_d));
+  seen.mirrored = reflectance(layers.material.specular, cos_d).cwiseProduct(layers.passed(cos_o, cos_i));
+  const double cos_o_below = std::max(seen.to_eye.dot(n), kMinCosine);
+  const double G = smith_masking_shadowing(cos_o_below, seen.to_light.dot(n), layers.masking_alpha);
+  seen.glint_weight = seen.mirrored * (G / (4 * cos_o_below));  // [Yan14] Eq. 1
+  return seen;
 }
 
 }  // namespace mica::host

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -75,8 +76,8 @@ Scene::Scene(const SceneDescription& description, int width, int height, PixelSe
   pixels.normal_change.resize(materials, Eigen::Matrix2d::Zero());
   const PinholeCamera camera(description.camera, width, height);
   implementation_.reset(
-      new Implementation{{std::make_shared<const StaticScene>(description), camera, std::move(masking_alpha),
-                          description.lights, std::move(gathering)},
+      new Implementation{{std::make_shared<const StaticScene>(description), camera,
+                          make_layers(description.materials, masking_alpha), description.lights, std::move(gathering)},
                          std::move(pixels),
                          width,
                          height});
@@ -114,11 +115,8 @@ const std::vector<MaterialDescription>& Scene::materials() const {
 std::uint32_t Scene::material_of(const Hit& hit) const {
   return implementation_->viewer.shared->part_materials[hit.shape][hit.part];
 }
-const std::optional<CoatInterface>& Scene::coat(std::uint32_t material) const {
-  return implementation_->viewer.shared->coats[material];
-}
-double Scene::masking_alpha(std::uint32_t material) const {
-  return implementation_->viewer.masking_alpha[material];
+const LayeredMaterial& Scene::layers(std::uint32_t material) const {
+  return (*implementation_->viewer.layers)[material];
 }
 
 Scene Scene::with_view(const CameraDescription& camera, const std::vector<LightDescription>& lights,
@@ -127,9 +125,13 @@ Scene Scene::with_view(const CameraDescription& camera, const std::vector<LightD
   std::vector<double> alphas = masking_alpha;
   complete(&alphas, self.viewer.shared->materials.size());
   check_lights(lights);
+  const bool same =
+      std::equal(alphas.begin(), alphas.end(), self.viewer.layers->begin(),
+                 [](double alpha, const LayeredMaterial& m) { return alpha == m.masking_alpha; });
   return Scene(std::unique_ptr<Implementation>(
       new Implementation{{self.viewer.shared, PinholeCamera(camera, self.width, self.height),
-                          std::move(alphas), lights, self.viewer.gathering},
+                          same ? self.viewer.layers : make_layers(self.viewer.shared->materials, alphas),
+                          lights, self.viewer.gathering},
                          self.pixels,
                          self.width,
                          self.height}));

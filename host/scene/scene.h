@@ -7,11 +7,11 @@
 
 #include "host/base/glints.h"
 #include "host/base/query.h"
-#include "host/scene/coat.h"
 #include "host/scene/description.h"
 #include "host/scene/environment.h"
 #include "host/scene/geometry.h"
 #include "host/scene/lattice.h"
+#include "host/scene/layered_material.h"
 #include "host/scene/lit_point.h"
 #include "host/scene/pixel_filter.h"
 
@@ -105,9 +105,8 @@ class Scene {
   const Environment& environment() const;
   const std::vector<LightDescription>& lights() const;
   const std::vector<MaterialDescription>& materials() const;
-  std::uint32_t material_of(const Hit& hit) const;     ///< index into materials()
-  double masking_alpha(std::uint32_t material) const;  ///< as it was given
-  const std::optional<CoatInterface>& coat(std::uint32_t material) const;
+  std::uint32_t material_of(const Hit& hit) const;  ///< index into materials()
+  const LayeredMaterial& layers(std::uint32_t material) const;
 
  private:
   struct Implementation;

@@ -7,7 +7,6 @@
 
 #include "host/base/constants.h"
 #include "host/microfacet/horizon.h"
-#include "host/microfacet/masking.h"
 #include "host/scene/fresnel.h"
 
 namespace mica::host {
@@ -35,13 +34,28 @@ struct Illuminate {
     seen.distance -= light.radius;
     return seen;
   }
+  /// The vector irradiance of a disk that is as bright everywhere and from every angle, L int w dw over the
+  /// directions in which it is seen, by a contour integral around its rim: E = (L / 2) int r x dr / r^2. Its
+  /// length is the irradiance on a surface that faces it, its product with a normal that on any surface
+  /// above whose horizon all of the disk lies. J. H. Lambert, Photometria (1760).
   Illumination operator()(const DiskLight& light) const {
-    Illumination seen = (*this)(PointLight{light.position, light.intensity});
-    const double cosine = std::max(0.0, -seen.direction.dot(light.direction.normalized()));
+    const Eigen::Vector3d axis = light.direction.normalized(), from_center = position - light.position;
+    const double height = from_center.dot(axis);
+    if (!(height > 0)) return {-axis, 0, Color::Zero()};  // behind it
+    const Eigen::Vector3d across = from_center - height * axis;
+    const double sum = light.radius * light.radius + from_center.squaredNorm();
+    const double root =
+        std::sqrt(std::max(0.0, sum * sum - 4 * light.radius * light.radius * across.squaredNorm()));
+    const Eigen::Vector3d vector =
+        (-(1 - 2 * across.squaredNorm() / (sum + root)) * axis - 2 * height / (sum + root) * across) / root;
+    Illumination seen;
+    seen.direction = vector.normalized();
+    seen.distance = height / -seen.direction.dot(axis);
+    seen.irradiance = light.intensity * vector.norm();
     // Foreshortened along one axis: the mean of both. Near by it fills no more than the sky.
-    const double tangent2 = light.radius * light.radius / (seen.distance * seen.distance);
-    seen.variance = tangent2 / (1 + tangent2) / 4 * (1 + cosine * cosine) / 2;
-    seen.irradiance *= cosine;
+    const double cosine2 = height * height / from_center.squaredNorm();
+    const double tangent2 = light.radius * light.radius / from_center.squaredNorm();
+    seen.variance = tangent2 / (1 + tangent2) / 4 * (1 + cosine2) / 2;
     return seen;
   }
 };
@@ -120,14 +134,6 @@ double half_vector_variance(double light_variance, double cos_d) {
   constexpr double least_cosine = 0.1;  // beyond it the spread is no longer small
   const double across = 1 / std::max(cos_d, least_cosine);
   return light_variance / 4 * (1 + across * across) / 2;
-}
-
-Color glint_weight(const Fresnel& fresnel, double masking_alpha, const Eigen::Vector3d& n,
-                   const Eigen::Vector3d& to_eye, const Eigen::Vector3d& to_light) {
-  const Eigen::Vector3d half = (to_eye + to_light).normalized();
-  const double cos_o = to_eye.dot(n), cos_i = to_light.dot(n);
-  const double G = smith_masking_shadowing(cos_o, cos_i, masking_alpha);
-  return reflectance(fresnel, to_light.dot(half)) * (G / (4 * cos_o));
 }
 
 }  // namespace mica::host

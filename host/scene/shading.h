@@ -59,11 +59,4 @@ LightRay light_ray(const LightDescription& light, const Eigen::Vector3d& positio
 /// @param cos_d cosine between light and half vector.
 double half_vector_variance(double light_variance, double cos_d);
 
-/// f_r max(i.n, 0) / D, [Yan14] Eq. 1: what a P-NDF's value is multiplied with, besides the irradiance of the
-/// light.
-/// @param to_eye, to_light unit, above the horizon of n; @param masking_alpha Beckmann roughness of Smith's
-/// G.
-Color glint_weight(const Fresnel& fresnel, double masking_alpha, const Eigen::Vector3d& n,
-                   const Eigen::Vector3d& to_eye, const Eigen::Vector3d& to_light);
-
 }  // namespace mica::host

@@ -33,23 +33,21 @@ VisibleNormals isotropic_normals(double slope_sigma) {
 
 }  // namespace
 
-SmoothMaterial::SmoothMaterial(const MaterialDescription& material, const std::optional<CoatInterface>& coat,
-                               double alpha, Lobes lobes)
-    : material_(material),
-      coat_(coat),
-      alpha_(std::max(alpha, kLeastAlpha)),
-      diffuse_weight_(material.diffuse.maxCoeff()),
-      coat_weight_(coat ? 0.3 : 0),
+SmoothMaterial::SmoothMaterial(const LayeredMaterial& layers, Lobes lobes)
+    : layers_(layers),
+      alpha_(std::max(layers.masking_alpha, kLeastAlpha)),
+      diffuse_weight_(layers.material.diffuse.maxCoeff()),
+      coat_weight_(layers.coat ? 0.3 : 0),
       normals_weight_(lobes == Lobes::with_smooth_normals
-                          ? std::max(reflectance(material.specular, 1).maxCoeff(), 0.05)
+                          ? std::max(reflectance(layers.material.specular, 1).maxCoeff(), 0.05)
                           : 0),
-      coat_normals_(isotropic_normals(coat ? material.coat->roughness : 1)),
+      coat_normals_(isotropic_normals(layers.coat ? layers.material.coat->roughness : 1)),
       normals_(isotropic_normals(alpha_ / std::sqrt(2.0))) {}
 
 Color SmoothMaterial::value(const Eigen::Vector3d& view, const Eigen::Vector3d& light) const {
   if (!above_horizon(view, light)) return Color::Zero();
   const Illumination incident{light, std::numeric_limits<double>::infinity(), Color::Ones(), 0};
-  const LobesSeen seen = see_lobes(material_, coat_, alpha_, Eigen::Vector3d::UnitZ(), view, incident);
+  const LobesSeen seen = see_lobes(layers_, Eigen::Vector3d::UnitZ(), view, incident);
   if (!(normals_weight_ > 0)) return seen.smooth;
   return seen.smooth + beckmann_density(seen.half_vector, alpha_) * seen.glint_weight;
 }

@@ -1,11 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <optional>
 
 #include "host/microfacet/visible_normals.h"
-#include "host/scene/coat.h"
-#include "host/scene/description.h"
+#include "host/scene/layered_material.h"
 
 namespace mica::host {
 
@@ -16,9 +14,8 @@ class SmoothMaterial {
  public:
   enum class Lobes { without_normals, with_smooth_normals };
 
-  /// @param alpha Beckmann roughness of the map and of the material's own. All must outlive this.
-  SmoothMaterial(const MaterialDescription& material, const std::optional<CoatInterface>& coat, double alpha,
-                 Lobes lobes);
+  /// @param layers must outlive this.
+  SmoothMaterial(const LayeredMaterial& layers, Lobes lobes);
 
   /// Whether there is any lobe at all.
   bool is_black() const { return !(diffuse_weight_ + coat_weight_ + normals_weight_ > 0); }
@@ -33,9 +30,8 @@ class SmoothMaterial {
   double pdf(const Eigen::Vector3d& view, const Eigen::Vector3d& light) const;
 
  private:
-  const MaterialDescription& material_;
-  const std::optional<CoatInterface>& coat_;
-  double alpha_;
+  const LayeredMaterial& layers_;
+  double alpha_;                                          // of the map and of the material's own
   double diffuse_weight_, coat_weight_, normals_weight_;  // in proportion to which lobes are drawn from
   VisibleNormals coat_normals_, normals_;
 };

@@ -52,8 +52,6 @@ StaticScene::StaticScene(const SceneDescription& description)
       materials(description.materials),
       part_materials(materials_of_parts(description, geometry)),
       glints(description.materials.size()) {
-  for (const MaterialDescription& material : materials)
-    coats.push_back(material.coat ? std::optional<CoatInterface>(*material.coat) : std::nullopt);
   for (const auto& parts : part_materials)
     for (const std::uint32_t n : parts)
       if (materials[n].glints && !glints[n]) glints[n].emplace(materials[n]);
@@ -71,8 +69,7 @@ SeenLamp Viewer::see(const LightDescription& light, const SeenPoint& point,
   if (to_light.direction.dot(frame.face_normal) < kMinCosine) return lamp;
   if (shared->geometry.occluded(*point.hit, to_light.direction, to_light.distance)) return lamp;
   lamp.shines = true;
-  lamp.seen = see_lobes(shared->materials[point.material], shared->coats[point.material],
-                        masking_alpha[point.material], frame.z, point.to_eye, lamp.incident);
+  lamp.seen = see_lobes((*layers)[point.material], frame.z, point.to_eye, lamp.incident);
   lamp.half_vector = frame.on_disk(lamp.seen.half_vector);
   return lamp;
 }
@@ -105,12 +102,13 @@ LitBrdf Viewer::lit_brdf(const GlintQuery& query, const SeenPoint& point,
                          const Illumination& incident) const {
   LitBrdf lit;
   const Eigen::Vector3d light = point.frame.to_local(incident.direction);
-  const CoatCrossing crossing(shared->coats[query.material], point.frame.to_local(point.to_eye));
+  const LayeredMaterial& material = (*layers)[query.material];
+  const CoatCrossing crossing(material, point.frame.to_local(point.to_eye));
   lit.query = {query.query.footprint, crossing.view_below(), crossing.below(light), query.query.roughness};
   lit.sample = query.sample;
   lit.material = query.material;
-  const Color irradiance = incident.irradiance * crossing.value_scale(light);
-  const BounceFresnel fresnel(shared->materials[query.material].specular, lit.query.view, lit.query.light);
+  const Color irradiance = incident.irradiance.cwiseProduct(crossing.value_scale(light));
+  const BounceFresnel fresnel(material.material.specular, lit.query.view, lit.query.light);
   lit.weight_single = fresnel.single.cwiseProduct(irradiance).cast<float>();
   lit.weight_multiple = fresnel.multiple.cwiseProduct(irradiance).cast<float>();
   return lit;
@@ -140,8 +138,7 @@ void Viewer::ask(const SeenPoint& point, double sigma_pixels, const SamplePlace&
       queries->lit.push_back(lit_brdf(query, point, lamp.incident));
       continue;
     }
-    const Color weight = glints ? glints->weight(*point.hit, places.front(), point.frame, point.to_eye,
-                                                 lamp.seen, lamp.incident.direction)
+    const Color weight = glints ? glints->weight(*point.hit, places.front(), point.frame, lamp.seen)
                                 : lamp.seen.glint_weight;
     query.weight = weight.cwiseProduct(lamp.incident.irradiance).cast<float>();
     if (!(query.weight.maxCoeff() > 0)) continue;

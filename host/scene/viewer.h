@@ -8,10 +8,10 @@
 
 #include "host/scene/background.h"
 #include "host/scene/camera.h"
-#include "host/scene/coat.h"
 #include "host/scene/environment.h"
 #include "host/scene/geometry.h"
 #include "host/scene/glint_material.h"
+#include "host/scene/layered_material.h"
 #include "host/scene/lobes.h"
 #include "host/scene/scene.h"
 #include "host/scene/shading.h"
@@ -28,7 +28,6 @@ struct StaticScene {
   Environment environment;
   bool shows_environment;  ///< where rays hit nothing
   std::vector<MaterialDescription> materials;
-  std::vector<std::optional<CoatInterface>> coats;  ///< one a material
   PartMaterials part_materials;
   std::vector<std::optional<GlintMaterial>> glints;  ///< one a material; only for those that a shape has
 
@@ -81,7 +80,7 @@ struct SamplePlace {
 struct Viewer {
   std::shared_ptr<const StaticScene> shared;
   PinholeCamera camera;
-  std::vector<double> masking_alpha;  ///< one a material
+  std::shared_ptr<const LayeredMaterials> layers;  ///< one a material
   std::vector<LightDescription> lights;
   LightGathering gathering;
 

@@ -27,7 +27,8 @@ class MICA_API Brdf {
   Brdf(const Device& device, const std::string& method, const Settings& settings = {},
        const Methods& methods = {});
 
-  /// f(o, i) max(i.g, 0) of each. Throws UsageError, which names the first query that cannot be answered.
+  /// f(o, i) times the light's cosine, of each: max(i.g, 0), or the projected area that "beckmanns" has of
+  /// what the footprint sees. Throws UsageError, which names the first query that cannot be answered.
   void evaluate(const Lightings& queries, Span<float> values, BrdfPart part = BrdfPart::all,
                 const RunControl& control = {}) const;
   /// What a white patch scatters to the view at once, and what that loses: 2 numbers a view.

@@ -26,7 +26,7 @@ TEST(CavitiesInAJob, HaveTheirKeys) {
 TEST(CavitiesInAJob, RefuseWhatTheyDoNotTake) {
   const JobFolder folder;
   for (const std::string keys : {"spacing = 0.7", "energy = \"guess\"", "compensation = \"none\"",
-                                 "elements = 2", "masking = \"exact\"", "coat = { ior = 1.5 }"}) {
+                                 "elements = 2", "masking = \"exact\""}) {
     const std::vector<JobIssue> issues = folder.issues(with(keys));
     ASSERT_EQ(issues.size(), 1u) << keys;
     EXPECT_EQ(issues[0].line, 8) << keys;

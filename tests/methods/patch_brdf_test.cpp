@@ -47,11 +47,11 @@ Footprint whole_map() {
   return {{0.5, 0.5}, Eigen::Matrix2d::Identity()};
 }
 
-/// I(o) I(i), of what a BRDF answers: D of its pdf, and f = D / (4 I(o) I(i)).
-double area_product(const BrdfQuery& query, const BrdfValue& value) {
+/// A(i) / (I(o) I(i)), of what a BRDF answers: D of its pdf, and f A(i) = D A(i) / (4 I(o) I(i)).
+double areas_of(const BrdfQuery& query, const BrdfValue& value) {
   const Eigen::Vector3d half = (query.view + query.light).normalized();
   const double density = value.pdf * 4 * query.view.dot(half) / half.z();
-  return density * query.light.z() / (4 * value.single);
+  return 4 * value.single / density;
 }
 
 /// The BRDF's areas are those of [Che18] Eq. 11, which tests/reference integrates numerically, within 1e-3:
@@ -72,14 +72,15 @@ TEST(PatchBrdf, ExactMaskingIsTheIntegralOverTheLobes) {
           const Eigen::Vector2d slope = lobes[lobes.size() / 2].mean;
           const Eigen::Vector3d normal = Eigen::Vector3d(-slope.x(), -slope.y(), 1).normalized();
           const Eigen::Vector3d light = 2 * view.dot(normal) * normal - view;
-          if (view.dot(normal) < 0.02 || light.z() < 0.02) continue;
+          const double received = BeckmannMixture::projected_area(lobes, light);
+          if (view.dot(normal) < 0.02 || light.z() < 0.02 || received < 0.02) continue;
           const BrdfQuery query{footprint, view, light, 0.05};
-          const double found = area_product(query, brdf->evaluate({query})[0]);
-          const double expected =
-              BeckmannMixture::visible_area(lobes, view) * BeckmannMixture::visible_area(lobes, light);
+          const double found = areas_of(query, brdf->evaluate({query})[0]);
+          const double expected = received / (BeckmannMixture::visible_area(lobes, view) *
+                                              BeckmannMixture::visible_area(lobes, light));
           worst = std::max(worst, std::abs(found / expected - 1));
           EXPECT_NEAR(found / expected, 1, 1e-3) << "footprint " << sigma_texels << ", slope " << rms_slope
-                                                 << ", view at " << degrees << ", area " << expected;
+                                                 << ", view at " << degrees << ", areas " << expected;
         }
       }
     }
@@ -87,7 +88,7 @@ TEST(PatchBrdf, ExactMaskingIsTheIntegralOverTheLobes) {
   std::printf("areas are off by %.1e at most\n", worst);
 }
 
-/// What a white patch scatters to a view: the integral of f max(i.g, 0) over all lights.
+/// What a white patch scatters to a view: the integral over all lights.
 double scattered(PatchBrdf* brdf, const Footprint& footprint, const Eigen::Vector3d& view, double roughness) {
   constexpr int rings = 60, sectors = 80;
   std::vector<BrdfQuery> queries;
@@ -107,8 +108,7 @@ double scattered(PatchBrdf* brdf, const Footprint& footprint, const Eigen::Vecto
   return sum;
 }
 
-/// [Che18] Fig. 3. Footprints see the whole map, so that its mean normal is the geometric one and f (i.g)
-/// cannot gain: G1 <= 1 is what is lost.
+/// [Che18] Fig. 3. 1 - G1(i) is what is lost. Footprints see the whole map.
 TEST(PatchBrdf, WhiteFurnaceLosesAndNeverGains) {
   constexpr double roughness = 0.08;
   for (const double rms_slope : {0.3, 1.0}) {
@@ -206,7 +206,7 @@ TEST(PatchBrdf, ChiSquareFindsAWrongRoughness) {
   EXPECT_LT(test_sampler(brdf.get(), view, wrong, 1000000).p_value, 1e-6);
 }
 
-/// f (i.g) / pdf, and their mean is what the patch scatters.
+/// Values over pdf, and their mean is what the patch scatters.
 TEST(PatchBrdf, WeightsAverageToTheAlbedo) {
   const Surface surface = rough(0.3);
   const auto brdf = beckmanns(surface, Masking::exact);

@@ -7,7 +7,7 @@
 #include "host/base/constants.h"
 #include "host/microfacet/masking.h"
 #include "host/scene/fresnel.h"
-#include "host/scene/shading.h"
+#include "host/scene/lobes.h"
 
 namespace mica::host::brdf_test {
 namespace {
@@ -104,8 +104,12 @@ TEST(SmithMaskingShadowing, IsSymmetricBoundedAndVanishesAtTheHorizon) {
 
 TEST(GlintWeight, IsTheMicrofacetModelWithoutItsNdf) {
   const Eigen::Vector3d n = Eigen::Vector3d::UnitZ();
-  const ColorFresnel fresnel{{0.3, 0.6, 0.9}};
-  EXPECT_TRUE(glint_weight(fresnel, 0.1, n, n, n).isApprox(Color(0.3, 0.6, 0.9) / 4, 1e-15));
+  MaterialDescription material;
+  material.specular = ColorFresnel{{0.3, 0.6, 0.9}};
+  const auto weight = [&](double alpha, const Eigen::Vector3d& to_eye, const Eigen::Vector3d& to_light) {
+    return see_lobes(LayeredMaterial(material, alpha), n, to_eye, {to_light, 1, Color::Ones()}).glint_weight;
+  };
+  EXPECT_TRUE(weight(0.1, n, n).isApprox(Color(0.3, 0.6, 0.9) / 4, 1e-15));
 
   // Light at 60 degrees from the normal on one side, eye at 30 on the other: half vector 15 degrees off, 45
   // from both.
@@ -115,7 +119,7 @@ TEST(GlintWeight, IsTheMicrofacetModelWithoutItsNdf) {
   const double G = 1 / (1 + beckmann_lambda(std::cos(third), 0.5) + beckmann_lambda(std::cos(sixth), 0.5));
   const double shape = G / (4 * std::cos(sixth) * std::cos(third)) * std::cos(third);
   const Color expected = shape * Color(0.3 + 0.7 * schlick, 0.6 + 0.4 * schlick, 0.9 + 0.1 * schlick);
-  EXPECT_TRUE(glint_weight(fresnel, 0.5, n, o, i).isApprox(expected, 1e-13));
+  EXPECT_TRUE(weight(0.5, o, i).isApprox(expected, 1e-13));
 }
 
 }  // namespace

@@ -13,8 +13,14 @@ Eigen::Vector3d direction(double z, double azimuth) {
   return {radius * std::cos(azimuth), radius * std::sin(azimuth), z};
 }
 
+LayeredMaterial coated(double ior) {
+  MaterialDescription material;
+  material.coat = CoatDescription{ior, 0.02};
+  return {material, 0.1};
+}
+
 TEST(CoatCrossing, AboveUndoesBelow) {
-  const std::optional<CoatInterface> coat(CoatDescription{1.5, 0.02});
+  const LayeredMaterial coat = coated(1.5);
   const CoatCrossing crossing(coat, direction(0.6, 1));
   for (const double z : {0.01, 0.3, 0.99}) {
     const Eigen::Vector3d light = direction(z, 2);
@@ -26,7 +32,7 @@ TEST(CoatCrossing, AboveUndoesBelow) {
 }
 
 TEST(CoatCrossing, DensityScaleIsTheRatioOfSolidAngles) {
-  const std::optional<CoatInterface> coat(CoatDescription{1.33, 0.02});
+  const LayeredMaterial coat = coated(1.33);
   const CoatCrossing crossing(coat, direction(0.6, 1));
   for (const double z : {0.1, 0.5, 0.9}) {
     // Rings between z -+ h, of area 2 pi times the difference of their cosines.
@@ -37,13 +43,13 @@ TEST(CoatCrossing, DensityScaleIsTheRatioOfSolidAngles) {
 }
 
 TEST(CoatCrossing, WithoutACoatNothingChanges) {
-  const std::optional<CoatInterface> none;
+  const LayeredMaterial none(MaterialDescription{}, 0.1);
   const Eigen::Vector3d view = direction(0.6, 1), light = direction(0.2, 4);
   const CoatCrossing crossing(none, view);
   EXPECT_EQ(crossing.view_below(), view);
   EXPECT_EQ(crossing.below(light), light);
   EXPECT_EQ(crossing.above(light), light);
-  EXPECT_EQ(crossing.value_scale(light), 1);
+  EXPECT_EQ(crossing.value_scale(light), Color::Ones());
   EXPECT_EQ(crossing.density_scale(light), 1);
 }
 

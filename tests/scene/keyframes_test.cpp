@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "host/scene/keyframes.h"
 
 namespace mica::host::keyframes_test {
@@ -33,6 +35,31 @@ TEST(Keyframes, AreMetAndJoinedByLines) {
   EXPECT_TRUE(camera_at(scene, 20.25).position.isApprox(Vector3d(0, -5, 0.5)));
   EXPECT_TRUE(std::get<DiskLight>(lights_at(scene, 2)[1]).position.isApprox(Vector3d(1, 0, 3)));
   EXPECT_NEAR(std::get<DiskLight>(lights_at(scene, 2)[1]).radius, 0.75, 1e-12);
+}
+
+/// Where the sun of two keys, 4 frames apart, shines to.
+Vector3d turned(const Vector3d& first, const Vector3d& last, double frame) {
+  SceneDescription scene;
+  scene.lights = {DirectionalLight{}};
+  scene.light_keys = {{{0, DirectionalLight{first}}, {4, DirectionalLight{last}}}};
+  return std::get<DirectionalLight>(lights_at(scene, frame)[0]).direction;
+}
+
+TEST(Keyframes, DirectionsTurnWhateverTheirLengths) {
+  const Vector3d left(1, 0, -1), right(-1, 0, -1);
+  for (const double length : {1.0, 10.0, 1e-200})
+    EXPECT_TRUE(turned(length * left, right, 2).isApprox(Vector3d(0, 0, -1), 1e-12)) << length;
+  // 90 degrees in 4 frames, 22.5 in each.
+  EXPECT_NEAR(turned(left, 100 * right, 1).dot(left.normalized()), std::cos(M_PI / 8), 1e-12);
+  EXPECT_TRUE(turned(left, 3 * left, 1).isApprox(left.normalized(), 1e-12));
+}
+
+TEST(Keyframes, ALampThatTurnsOverHasADirectionInEachFrame) {
+  const Vector3d down(0.3, 0, -1), up = -2 * down;
+  for (const double frame : {0.0, 1.0, 2.0, 3.0, 4.0}) {
+    const Vector3d found = turned(down, up, frame);
+    EXPECT_NEAR(found.normalized().dot(down.normalized()), std::cos(M_PI * frame / 4), 1e-12) << frame;
+  }
 }
 
 TEST(Keyframes, StandStillBeforeAndAfter) {

@@ -3,32 +3,93 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <vector>
 
 #include "host/base/constants.h"
 #include "host/scene/camera.h"
 #include "host/scene/scene.h"
-#include "host/scene/shading.h"
 #include "tests/scene/pixel_radiance.h"
+#include "host/scene/shading.h"
 
 namespace mica::host::lights_test {
 namespace {
 
 using Eigen::Vector3d;
 
-// The irradiance of a uniform disk on a small patch on its axis that faces it: kPi L sin^2 of its angular
-// radius [any text on radiometry], L = I / (kPi r^2).
-TEST(AreaLights, IrradianceTendsToThatOfThePoint) {
-  const SphereLight sphere{{0, 0, 5}, 0.3, {7, 7, 7}};
-  const DiskLight disk{{0, 0, 5}, {0, 0, -2}, 0.3, {7, 7, 7}};
-  for (const LightDescription& light : {LightDescription(sphere), LightDescription(disk)}) {
-    const Illumination seen = illuminate(light, {0, 0, 0});
-    EXPECT_NEAR(seen.irradiance[0], 7.0 / 25, 1e-12);
-    EXPECT_NEAR((seen.direction - Vector3d(0, 0, 1)).norm(), 0, 1e-12);
+/// Irradiance on a patch at `place` that faces `normal`: the sum over small parts of the light's area that
+/// face the patch. @param parts of the area, as (point, normal, area).
+struct Part {
+  Vector3d point, normal;
+  double area;
+};
+double irradiance(const std::vector<Part>& parts, double radiance, const Vector3d& place,
+                  const Vector3d& normal) {
+  double sum = 0;
+  for (const Part& part : parts) {
+    const Vector3d way = part.point - place;
+    const double out = -way.dot(part.normal), in = way.dot(normal);
+    if (out > 0 && in > 0) sum += radiance * part.area * out * in / (way.squaredNorm() * way.squaredNorm());
   }
-  // A disk is as bright as its foreshortened area, and dark from behind.
-  const Illumination aside = illuminate(disk, {0, 4, 1});
-  EXPECT_NEAR(aside.irradiance[0], 7.0 / 32 * std::sqrt(0.5), 1e-12);
-  EXPECT_EQ(illuminate(disk, {0, 0, 7}).irradiance[0], 0);
+  return sum;
+}
+
+std::vector<Part> parts_of(const DiskLight& disk) {
+  constexpr int rings = 400, sectors = 400;
+  const Vector3d z = disk.direction.normalized(), x = z.unitOrthogonal(), y = z.cross(x);
+  std::vector<Part> parts;
+  for (int n = 0; n < rings; ++n)
+    for (int k = 0; k < sectors; ++k) {
+      const double r = disk.radius * std::sqrt((n + 0.5) / rings), turn = 2 * kPi * (k + 0.5) / sectors;
+      parts.push_back({disk.position + r * (std::cos(turn) * x + std::sin(turn) * y), z,
+                       kPi * disk.radius * disk.radius / (rings * sectors)});
+    }
+  return parts;
+}
+
+std::vector<Part> parts_of(const SphereLight& sphere) {
+  constexpr int rings = 800, sectors = 800;
+  std::vector<Part> parts;
+  for (int n = 0; n < rings; ++n)
+    for (int k = 0; k < sectors; ++k) {
+      const double z = 2 * (n + 0.5) / rings - 1, r = std::sqrt(1 - z * z),
+                   turn = 2 * kPi * (k + 0.5) / sectors;
+      const Vector3d normal(r * std::cos(turn), r * std::sin(turn), z);
+      parts.push_back({sphere.position + sphere.radius * normal, normal,
+                       4 * kPi * sphere.radius * sphere.radius / (rings * sectors)});
+    }
+  return parts;
+}
+
+double seen_irradiance(const LightDescription& light, const Vector3d& place, const Vector3d& normal) {
+  const Illumination seen = illuminate(light, place);
+  return seen.irradiance[0] * seen.direction.dot(normal);
+}
+
+// pi L r^2 / (r^2 + d^2) on a disk's axis, I / d^2 from a sphere, with L = I / (pi r^2).
+TEST(AreaLights, IrradianceHasItsClosedFormOnTheAxis) {
+  for (const double radius : {0.1, 1.0, 5.0, 40.0}) {
+    const DiskLight disk{{0, 0, 5}, {0, 0, -2}, radius, {7, 7, 7}};
+    EXPECT_NEAR(seen_irradiance(disk, {0, 0, 0}, {0, 0, 1}), 7 / (25 + radius * radius), 1e-12);
+  }
+  EXPECT_NEAR(seen_irradiance(SphereLight{{0, 0, 5}, 3, {7, 7, 7}}, {0, 0, 0}, {0, 0, 1}), 7.0 / 25, 1e-12);
+  EXPECT_EQ(illuminate(DiskLight{{0, 0, 5}, {0, 0, -1}, 0.3, {7, 7, 7}}, {0, 0, 7}).irradiance[0], 0)
+      << "behind";
+}
+
+// Wherever a patch is and however it is turned, as long as all of the light is above its horizon.
+TEST(AreaLights, IrradianceIsTheSumOverTheirArea) {
+  const DiskLight disk{{0.5, 0.2, 2}, {0.3, -0.1, -1}, 0.8, {7, 7, 7}};
+  const SphereLight sphere{{0.5, 0.2, 2}, 0.8, {7, 7, 7}};
+  const double radiance = 7 / (kPi * 0.8 * 0.8);
+  const std::vector<Part> of_disk = parts_of(disk), of_sphere = parts_of(sphere);
+  for (const Vector3d& place : {Vector3d(0, 0, 0), Vector3d(1.5, -0.4, 0.2), Vector3d(0.6, 0.1, 0.8)})
+    for (const Vector3d& turned : {Vector3d(0, 0, 1), Vector3d(0.3, 0, 1), Vector3d(-0.2, 0.3, 1)}) {
+      const Vector3d normal = turned.normalized();
+      const double from_disk = irradiance(of_disk, radiance, place, normal);
+      EXPECT_NEAR(seen_irradiance(disk, place, normal) / from_disk, 1, 1e-4) << place.transpose();
+      const double from_sphere = irradiance(of_sphere, radiance, place, normal);
+      EXPECT_NEAR(seen_irradiance(sphere, place, normal) / from_sphere, 1, 3e-4) << place.transpose();
+    }
 }
 
 // Brute force: half vectors of light from points of the light, their variance on the disk of the surface.
@@ -81,6 +142,7 @@ TEST(AreaLights, PenumbraIsHalfLitInItsMiddle) {
   SceneDescription scene;
   MaterialDescription material;
   material.name = "m";
+  material.specular = DielectricFresnel{1};  // takes nothing
   material.diffuse = {1, 1, 1};
   scene.materials = {material};
   ShapeDescription screen{PlaneShape{{50, 0, 1}, 100}, "m"};
@@ -99,8 +161,9 @@ TEST(AreaLights, PenumbraIsHalfLitInItsMiddle) {
   for (int column = 0; column < width; ++column) {
     const CameraRay ray = camera.ray(column + 0.5, 1.5);
     const Vector3d p = ray.origin - ray.origin.z() / ray.direction.z() * ray.direction;
-    const double cosine = 2 / std::sqrt(4 + p.squaredNorm());
-    const double full = std::pow(cosine, 4) / 4;  // what 1 W/sr gives from 2 away
+    // What 1 W/sr gives from 2 above, of a disk that is parallel to the ground.
+    const double sum = 4 + p.squaredNorm() + 0.01, root = std::sqrt(sum * sum - 4 * 0.01 * p.squaredNorm());
+    const double full = (1 - (sum - 2 * 0.01) / root) / (2 * 0.01);
     const double lit = radiance[static_cast<std::size_t>(column)].x() / full;
     if (p.x() < -0.12) {
       EXPECT_NEAR(lit, 1, 1e-3) << p.x();

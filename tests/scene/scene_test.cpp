@@ -28,6 +28,7 @@ SceneDescription with_shapes(const std::vector<decltype(ShapeDescription::geomet
   material.name = "m";
   material.repeat = {3, 5};
   material.roughness = 0.02;
+  material.specular = DielectricFresnel{1.5};
   material.diffuse = {0.5, 0.25, 0.125};
   description.materials = {MaterialDescription{}, material};
   for (const auto& shape : shapes) description.shapes.push_back({shape, "m"});
@@ -104,6 +105,7 @@ TEST(Scene, RowsAreTheSameHoweverTheyAreSplitAndThreaded) {
 TEST(Scene, LambertianPlaneReflectsItsAlbedo) {
   SceneDescription description = with_shapes({PlaneShape{{0, 0, 0}, 100}});
   description.lights = {DirectionalLight{{1, 0, -1}, {3, 2, 1}}};
+  description.materials[1].specular = DielectricFresnel{1};  // takes nothing
   description.camera.position = {0, -1, 2};
   description.camera.look_at = {0, 0, 0};
   const TracedRows rows = Scene(description, 16, 9, 2).trace(0, 9);
@@ -128,7 +130,6 @@ TEST(Scene, QueriesOfAPlaneAreThoseOfTheClosedForm) {
   SceneDescription description = with_shapes({PlaneShape{{0.5, 0.25, 0}, 8}});
   const PointLight light{{1, 2, 3}, {40, 50, 60}};
   description.lights = {light};
-  description.materials[1].specular = DielectricFresnel{1.5};
   for_each_query(description, {0.7, 0.3}, [&](const GlintQuery& query, const CameraRay& ray) {
     const Vector3d p = ray.origin - ray.origin.z() / ray.direction.z() * ray.direction;
     const Vector3d o = -ray.direction.normalized(), i = (light.position - p).normalized(),

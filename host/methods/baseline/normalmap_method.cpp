@@ -13,7 +13,7 @@ class NormalMapMethod : public Method {
   MethodTraits traits() const override {
     MethodTraits traits;
     traits.brdf = traits.lit_by_brdf = true;
-    traits.densities = traits.device = traits.compared = traits.coat = false;
+    traits.densities = traits.device = traits.compared = false;
     return traits;
   }
 

@@ -126,8 +126,9 @@ std::vector<BeckmannBrdf::Parts> BeckmannBrdf::patch_parts(const std::vector<Brd
   const std::vector<float> answers = patches_->start(std::move(patch_queries))->wait();
   std::vector<Parts> parts(queries.size());
   tbb::parallel_for(std::size_t{0}, queries.size(), [&](std::size_t n) {
+    // The light's projected area is negative behind the mean normal: nothing is received there.
     parts[n] = {answers[kAnswers * n], answers[kAnswers * n + 1], answers[kAnswers * n + 2],
-                answers[kAnswers * n + 3]};
+                std::max(answers[kAnswers * n + 3], 0.0f)};
   });
   return parts;
 }
@@ -149,7 +150,7 @@ std::vector<BrdfValue> BeckmannBrdf::evaluate(const std::vector<BrdfQuery>& quer
   tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t n) {
     const Eigen::Vector3d half = half_vector(visible[n]);
     const double areas = std::max(all[n].view_area * all[n].light_area, kLeastAreas);
-    values[places[n]].single = static_cast<float>(all[n].density * visible[n].light.z() / (4 * areas));
+    values[places[n]].single = static_cast<float>(all[n].density * all[n].light_projected / (4 * areas));
     values[places[n]].pdf = static_cast<float>(all[n].density * half.z() / (4 * visible[n].view.dot(half)));
   });
   return values;
@@ -204,8 +205,7 @@ Albedo BeckmannBrdf::albedo(const ViewQuery& from) {
   const double scale = 1 / (kAlbedoSamples * std::max(all[0].view_area, kLeastAreas));
   double scattered = 0, lost = scale * hidden_facing;
   for (std::size_t n = 0; n < seen.size(); ++n) {
-    // One filtered lobe's projected area may be negative where normals lean beyond the horizon.
-    const double g1 = std::max(all[n].light_projected / std::max(all[n].light_area, kLeastAreas), 0.0);
+    const double g1 = all[n].light_projected / std::max(all[n].light_area, kLeastAreas);
     scattered += scale * facing[n] * g1;
     lost += scale * facing[n] * std::max(1 - g1, 0.0);
   }

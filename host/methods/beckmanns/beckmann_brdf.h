@@ -19,18 +19,16 @@ struct BeckmannBrdfSettings {
 };
 
 /// `beckmanns`: the BRDF of a mixture of Beckmann lobes, [Che18] Eq. 7, without Fresnel:
-///     f_P(o, i) = D_P(h) / (4 I(o) I(i)),    I(o) = A_P(o) / G1(o) = integral of <o, w> D_P(w) dw    (Eq.
-///     11),
-/// in which the projected areas A_P cancel. Nothing bounces twice.
+///     f_P(o, i) = D_P(h) / (4 I(o) I(i)),   I(o) = A_P(o) / G1(o) = integral of <o, w> D_P(w) dw   (Eq. 11),
+/// in which the projected areas A_P cancel. A patch receives light by its own cosine, A_P(i), and not by i.g:
+/// answers are f_P(o, i) A_P(i), with which no patch scatters more than it gets (docs/accuracy.md). With
+/// `geometric` masking A_P(i) is i.g. Nothing bounces twice.
 class BeckmannBrdf : public PatchBrdf {
  public:
   /// Builds the mixture and uploads it. Throws what `build_lobes` throws.
   BeckmannBrdf(Device& device, const Surface& surface, const BeckmannBrdfSettings& settings);
 
   std::vector<BrdfValue> evaluate(const std::vector<BrdfQuery>& queries) override;
-  /// Light counts as the patch receives it, by the projected area A(i) of its mean normal and not by i.g: the
-  /// two are the same where the mean normal is g, and only with the first no patch scatters more than it
-  /// gets.
   std::vector<Albedo> energy(const std::vector<ViewQuery>& queries) override;
   std::vector<BrdfSample> sample(const std::vector<SampleQuery>& queries) override;
 

@@ -45,7 +45,7 @@ class CavitiesMethod : public Method {
   MethodTraits traits() const override {
     MethodTraits traits;
     traits.brdf = traits.lit_by_brdf = true;
-    traits.densities = traits.compared = traits.coat = false;
+    traits.densities = traits.compared = false;
     return traits;
   }
   bool takes(Interpolation interpolation) const override { return interpolation != Interpolation::bicubic; }

@@ -15,8 +15,4 @@ double compensation(Compensation kind, const Eigen::Vector3d& view, const Eigen:
 /// Standard deviation of (i_x, i_y) in the specular lobe: twice that of the half vector.
 double specular_lobe_sigma(double roughness);
 
-/// Probability that a Gaussian of standard deviation `sigma` about a point `radius` from the origin stays in
-/// the unit circle, to 1e-6 for a radius up to 1.
-double share_in_unit_circle(double radius, double sigma);
-
 }  // namespace mica::host
