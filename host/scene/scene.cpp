@@ -1,7 +1,6 @@
 #include "host/scene/scene.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -19,6 +18,7 @@
 #include "host/scene/geometry.h"
 #include "host/scene/glint_material.h"
 #include "host/scene/lobes.h"
+#include "host/scene/part_materials.h"
 #include "host/scene/shading.h"
 #include "mica/error.h"
 
@@ -32,37 +32,6 @@ constexpr double kFilterSigmaSubpixels = 0.5;
 Eigen::Vector2d wrap(const Eigen::Vector2d& uv) {
   const Eigen::Vector2d wrapped = uv - uv.array().floor().matrix();
   return (wrapped.array() < 1).select(wrapped, 0);
-}
-
-std::uint32_t material_index(const SceneDescription& description, std::size_t shape,
-                             const std::string& name) {
-  const auto found = std::find_if(description.materials.begin(), description.materials.end(),
-                                  [&](const MaterialDescription& m) { return m.name == name; });
-  if (found == description.materials.end())
-    throw UsageError(fmt::format("shape {}: there is no material '{}'", shape + 1, name));
-  return static_cast<std::uint32_t>(found - description.materials.begin());
-}
-
-/// Indices of the materials of each shape's parts.
-using PartMaterials = std::vector<std::vector<std::uint32_t>>;
-
-PartMaterials materials_of_parts(const SceneDescription& description, const Geometry& geometry) {
-  PartMaterials materials;
-  for (std::size_t n = 0; n < description.shapes.size(); ++n) {
-    const ShapeDescription& shape = description.shapes[n];
-    const std::vector<std::string>& parts = geometry.parts(n);
-    materials.emplace_back(std::max<std::size_t>(parts.size(), 1),
-                           material_index(description, n, shape.material));
-    for (const PartMaterial& wanted : shape.parts) {
-      const auto part = std::find(parts.begin(), parts.end(), wanted.part);
-      if (part == parts.end())
-        throw UsageError(fmt::format("shape {}: found no part '{}'; its parts are: {}", n + 1, wanted.part,
-                                     parts.empty() ? "none" : fmt::format("{}", fmt::join(parts, ", "))));
-      materials[n][static_cast<std::size_t>(part - parts.begin())] =
-          material_index(description, n, wanted.material);
-    }
-  }
-  return materials;
 }
 
 struct IsUsableLight {
@@ -176,6 +145,7 @@ struct StaticScene {
   std::vector<std::optional<CoatInterface>> coats;  ///< one a material
   PartMaterials part_materials;
   std::vector<std::optional<GlintMaterial>> glints;  ///< one a material; only for those that a shape has
+  Findings findings;
 
   Color far_radiance(const Eigen::Vector3d& direction) const {
     return shows_environment ? environment.radiance(direction) : background.radiance(direction);
@@ -183,14 +153,17 @@ struct StaticScene {
 };
 
 StaticScene make_static_scene(const SceneDescription& description) {
+  Findings findings;
   StaticScene made{Geometry(description.shapes),
-                   Background(description.background),
-                   Environment(description.environments),
+                   Background(description.background, &findings),
+                   Environment(description.environments, &findings),
                    description.background.is_environment,
                    description.materials,
                    {},
                    {},
+                   {},
                    {}};
+  made.findings = std::move(findings);
   for (const MaterialDescription& material : description.materials)
     made.coats.push_back(material.coat ? std::optional<CoatInterface>(*material.coat) : std::nullopt);
   made.part_materials = materials_of_parts(description, made.geometry);
@@ -245,6 +218,9 @@ Scene::~Scene() = default;
 Scene::Scene(Scene&&) noexcept = default;
 Scene& Scene::operator=(Scene&&) noexcept = default;
 
+const Findings& Scene::findings() const {
+  return implementation_->shared->findings;
+}
 const Geometry& Scene::geometry() const {
   return implementation_->shared->geometry;
 }
