@@ -10,7 +10,7 @@ namespace mica::host::app {
 namespace {
 
 int run(const std::string& json_path) {
-  if (!json_path.empty()) prepare_output(json_path);
+  const Outputs outputs({json_path});
   const std::vector<DeviceInfo> devices = list_devices();
   if (devices.empty())
     throw DeviceError("no OpenCL device found; on Debian `apt install pocl-opencl-icd` adds the CPU as one");

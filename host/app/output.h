@@ -1,11 +1,26 @@
 #pragma once
 
+#include <list>
 #include <string>
+#include <vector>
+
+#include "host/base/leftovers.h"
 
 namespace mica::host::app {
 
-/// Makes the folder of `path` when it is missing, and throws FileError unless a file can be written there:
-/// asked before hours of work, not after.
-void prepare_output(const std::string& path);
+/// The files that a command is going to write, looked at before it works: hold it until they are written.
+class Outputs {
+ public:
+  /// Makes the folders of files, which go again while they are empty.
+  /// @param paths empty ones are left out. @param inputs that the command reads.
+  /// Throws FileError for what cannot be written, UsageError for an output that is an input or another
+  /// output.
+  explicit Outputs(const std::vector<std::string>& paths, const std::vector<std::string>& inputs = {});
+
+ private:
+  void make_folder(const std::string& path);
+
+  std::list<Leftover> folders_;  // the inner ones first, as they go
+};
 
 }  // namespace mica::host::app
