@@ -7,6 +7,7 @@
 #include <cstring>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "host/base/atomic_file.h"
@@ -29,24 +30,32 @@ bool identify(const std::string& path, Identity* identity) {
 }  // namespace
 
 Outputs::Outputs(const std::vector<std::string>& paths, const std::vector<std::string>& inputs) {
-  std::map<Identity, std::string> files;
-  Identity identity;
-  for (const std::string& input : inputs)
-    if (!input.empty() && identify(input, &identity)) files.emplace(identity, "an input, " + input);
-  std::map<std::string, std::string> names;
-  for (const std::string& path : paths) {
-    if (path.empty()) continue;
-    if (const std::string problem = writing_problem(path); !problem.empty())
+  for (const std::string& path : paths)
+    if (const std::string problem = path.empty() ? "" : writing_problem(path); !problem.empty())
       throw FileError(path + ": " + problem);
-    const bool named = !names.emplace(fs::path(path).lexically_normal().string(), path).second;
-    const auto found = identify(path, &identity) ? files.find(identity) : files.end();
-    if (named || found != files.end())
-      throw UsageError(fmt::format("{}: is to be written and is {} of the same call; expected another name",
-                                   path, named ? "another output" : found->second));
-    if (identify(path, &identity)) files.emplace(identity, "another output, " + path);
-  }
   for (const std::string& path : paths)
     if (!path.empty()) make_folder(path);
+  check_identities(paths, inputs);  // new/../map.exr names a map only now
+}
+
+void Outputs::check_identities(const std::vector<std::string>& paths,
+                               const std::vector<std::string>& inputs) {
+  std::map<Identity, std::string> files;
+  std::set<std::string> names;
+  Identity identity;
+  for (const std::string& input : inputs)
+    if (!input.empty() && identify(input, &identity)) files.emplace(identity, "an input, " + input + ",");
+  for (const std::string& path : paths) {
+    if (path.empty()) continue;
+    std::string other =
+        names.insert(fs::path(path).lexically_normal().string()).second ? "" : "another output";
+    if (identify(path, &identity))
+      if (const auto [found, is_new] = files.emplace(identity, "another output"); !is_new)
+        other = found->second;
+    if (!other.empty())
+      throw UsageError(
+          fmt::format("{}: is to be written and is {} of the same call; expected another name", path, other));
+  }
 }
 
 void Outputs::make_folder(const std::string& path) {

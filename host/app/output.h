@@ -19,6 +19,7 @@ class Outputs {
 
  private:
   void make_folder(const std::string& path);
+  static void check_identities(const std::vector<std::string>& paths, const std::vector<std::string>& inputs);
 
   std::list<Leftover> folders_;  // the inner ones first, as they go
 };

@@ -103,12 +103,12 @@ std::string replacing_problem(const struct stat& status) {
 }  // namespace
 
 void write_file_atomically(const std::string& path, const std::string& bytes) {
-  const std::string target = link_target(path);
   struct stat status;
-  const bool exists = stat(target.c_str(), &status) == 0;
+  const bool exists = stat(path.c_str(), &status) == 0;
   if (exists)
     if (const std::string problem = replacing_problem(status); !problem.empty())
       throw FileError(path + ": " + problem);
+  const std::string target = link_target(path);
   TemporaryFile file(target);
   if (exists) file.set_mode(status.st_mode);
   file.write(bytes);
@@ -117,15 +117,14 @@ void write_file_atomically(const std::string& path, const std::string& bytes) {
 }
 
 std::string writing_problem(const std::string& path) {
-  const std::string target = link_target(path);
   struct stat status;
-  if (stat(target.c_str(), &status) == 0) {
+  if (stat(path.c_str(), &status) == 0) {
     if (S_ISDIR(status.st_mode)) return "is a folder, expected a file to write";
     if (std::string problem = replacing_problem(status); !problem.empty()) return problem;
   } else if (errno != ENOENT) {
     return fmt::format("cannot write: {}", std::strerror(errno));
   }
-  fs::path folder = folder_of(target);
+  fs::path folder = folder_of(link_target(path));
   while (stat(folder.c_str(), &status) != 0) {  // the nearest that is there is what others are made in
     if (errno != ENOENT) return fmt::format("cannot write into its folder: {}", std::strerror(errno));
     folder = folder_of(folder.string());
