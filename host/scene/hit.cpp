@@ -11,8 +11,10 @@ namespace {
 
 /// Along a normal, from what is rounded in each axis: the floor z = 0 stays where it is however large it is
 /// (Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., sec. 6.8).
+/// But a ray that starts exactly there hits it at t = 0, so that a trace of the greatest coordinate remains.
 double error_along(const Eigen::Vector3d& normal, const Eigen::Vector3d& greatest) {
-  return kRelativeError * normal.cwiseAbs().dot(greatest);
+  constexpr double trace = 1e-10;
+  return kRelativeError * normal.cwiseAbs().dot(greatest) + trace * greatest.maxCoeff();
 }
 
 /// Of a plane through three points: their rounding, and that of the normal that is made of two edges.
@@ -58,7 +60,7 @@ Hit hit_plane(const PlaneShape& plane, const Ray& ray) {
   hit.position = ray.origin + hit.t * ray.direction;
   hit.position.z() = plane.center.z();
   hit.face_normal = hit.normal = Eigen::Vector3d::UnitZ();
-  hit.error = error_along(hit.normal, hit.position.cwiseAbs());
+  hit.error = error_along(hit.normal, {plane.size, plane.size, std::abs(plane.center.z())});
   hit.tangent = Eigen::Vector3d::UnitX();
   hit.dpdu = plane.size * Eigen::Vector3d::UnitX();
   hit.dpdv = plane.size * Eigen::Vector3d::UnitY();

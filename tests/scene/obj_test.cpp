@@ -246,7 +246,7 @@ TEST_F(Obj, MistakesAreNamedWithTheirLine) {
   EXPECT_NE(error_of("\x1f\x8b\x08").find("gzip"), std::string::npos);
   EXPECT_NE(error_of("v " + std::string(17 << 20, '1')).find("found a line of more than"), std::string::npos);
   EXPECT_EQ(
-      error_of("v 0 0 0\nv 1 1 0\nv 1 0 0\nv 0 1 0\nv 3 0 0\nvt 0 0\nf 1/1 2/1 3/1 4/1 5/1\n"),
+      error_of("v 0 0 0\nv 4 0 0\nv 0 3 0\nv 4 3 0\nv 2 5 0\nvt 0 0\nf 1/1 2/1 3/1 4/1 5/1\n"),
       "7: found a polygon of 5 corners that crosses itself, expected one that does not: triangulate it when "
       "exporting");
 }
