@@ -267,11 +267,12 @@ class PictureReader {
     return pixels;
   }
 
-  /// TIFF alone of the integer formats can hold colours that alpha has been multiplied into, before their
-  /// curve.
+  /// TIFF can hold colours that alpha has been multiplied into, before their curve, and OpenImageIO 2.4
+  /// always multiplies those of WebP.
   void divide_by_alpha(Picture* picture) {
-    const bool is_associated = format_.reader == "tiff" && spec_.alpha_channel >= 0 &&
-                               spec_.get_int_attribute("oiio:UnassociatedAlpha", 0) == 0;
+    const bool can_be = format_.reader == "tiff" || format_.reader == "webp";
+    const bool is_associated =
+        can_be && spec_.alpha_channel >= 0 && spec_.get_int_attribute("oiio:UnassociatedAlpha", 0) == 0;
     if (!is_associated) return;
     const std::vector<float> alpha = read_pixels({spec_.alpha_channel});
     const std::size_t count = picture->channels.size();

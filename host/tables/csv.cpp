@@ -122,7 +122,7 @@ class CsvReader {
     for (; is_there && is_comment(*line); is_there = next_line(line)) names = *line, at = line_number_;
     double number = 0;
     const bool is_row =
-        is_there && !names.empty() && to_number(split(*line, separator_of(*line))[0], &number);
+        is_there && !names.empty() && to_number(split(trim(*line), separator_of(trim(*line)))[0], &number);
     if (!is_row && is_there) names = *line, at = line_number_;
     if (names.empty()) fail(fmt::format("no header; expected {}", expected()));
     const std::size_t row_at = std::exchange(line_number_, at);

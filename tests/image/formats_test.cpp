@@ -154,14 +154,19 @@ TEST_F(Formats, AlphaDoesNotChangeColours) {
   ImageSpec unassociated(1, 1, 4), associated(1, 1, 4);
   unassociated.attribute("oiio:UnassociatedAlpha", 1);
   std::vector<std::string> files;
-  for (const std::string type : {"png", "tif", "tga", "webp"}) {
-    if (type == "webp") unassociated.attribute("Compression", "lossless");
+  for (const std::string type : {"png", "tif", "tga"})
     files.push_back(write<std::uint8_t>("a." + type, unassociated, {200, 120, 60, 80}));
-  }
+  // Pillow's, lossless: OpenImageIO's own writer changes such colours.
+  files.push_back(write_bytes("a.webp", std::string("RIFF\x1e\0\0\0WEBPVP8L\x11\0\0\0\x2f\x01\x40\0\x10\x07"
+                                                    "\x50\xbc\x22\x97\xa7\x50\x81\x88\xe8\x7f\0\0",
+                                                    38)));
   files.push_back(write<std::uint16_t>("b.tif", associated, {25700, 15420, 7710, 32768}));  // times 0.5
   for (const std::string& file : files) {
     const std::vector<float> rgb = first_rgb(file);
-    for (std::size_t n = 0; n < 3; ++n) EXPECT_NEAR(rgb[n], expected[n], 2e-5f) << file;
+    // OpenImageIO rounds WebP's colours times alpha to integers: half a step, over alpha, on a slope
+    // below 2.3.
+    const float tolerance = file.find(".webp") != file.npos ? 2.3f * 0.5f / 80 : 2e-5f;
+    for (std::size_t n = 0; n < 3; ++n) EXPECT_NEAR(rgb[n], expected[n], tolerance) << file;
   }
 }
 
