@@ -5,6 +5,7 @@
 
 #include "host/device/binary_cache.h"
 #include "host/device/kernel_sources.h"
+#include "host/device/no_device.h"
 
 namespace mica::host {
 namespace {
@@ -49,7 +50,8 @@ DeviceInfo describe(const cl::Device& device) {
   return info;
 }
 
-/// A driver that is installed may still have no device: PoCL has none where it cannot make its cache.
+}  // namespace
+
 DeviceError no_device() {
   const std::string none = "no OpenCL device found; ";
   for (const cl::Platform& platform : all_platforms())
@@ -60,6 +62,8 @@ DeviceError no_device() {
                     none, platform.getInfo<CL_PLATFORM_NAME>()));
   return DeviceError(none + "on Debian `apt install pocl-opencl-icd` adds the CPU as one");
 }
+
+namespace {
 
 cl::Device choose(int index) {
   const std::vector<cl::Device> devices = all_devices();
