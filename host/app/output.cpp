@@ -29,13 +29,16 @@ bool identify(const std::string& path, Identity* identity) {
 
 }  // namespace
 
-Outputs::Outputs(const std::vector<std::string>& paths, const std::vector<std::string>& inputs) {
+Outputs::Outputs(const std::vector<std::string>& paths, const std::vector<std::string>& inputs,
+                 const std::vector<std::string>& later) {
   for (const std::string& path : paths)
     if (const std::string problem = path.empty() ? "" : writing_problem(path); !problem.empty())
       throw FileError(path + ": " + problem);
   for (const std::string& path : paths)
     if (!path.empty()) make_folder(path);
-  check_identities(paths, inputs);  // new/../map.exr names a map only now
+  std::vector<std::string> all = paths;
+  all.insert(all.end(), later.begin(), later.end());
+  check_identities(all, inputs);  // new/../map.exr names a map only now
 }
 
 void Outputs::check_identities(const std::vector<std::string>& paths,

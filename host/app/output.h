@@ -15,7 +15,9 @@ class Outputs {
   /// @param paths empty ones are left out. @param inputs that the command reads.
   /// Throws FileError for what cannot be written, UsageError for an output that is an input or another
   /// output.
-  explicit Outputs(const std::vector<std::string>& paths, const std::vector<std::string>& inputs = {});
+  /// @param later outputs of frames after the first, which may fail for themselves: none may be an input.
+  explicit Outputs(const std::vector<std::string>& paths, const std::vector<std::string>& inputs = {},
+                   const std::vector<std::string>& later = {});
 
  private:
   void make_folder(const std::string& path);

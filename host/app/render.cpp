@@ -51,9 +51,10 @@ OutputNames names_of_frame(const OutputNames& names, const Job& job, int frame) 
   return {numbered(names.exr, frame), numbered(names.png, frame)};
 }
 
-std::vector<std::string> all_outputs(const OutputNames& names, const Job& job, const std::string& json) {
-  std::vector<std::string> paths = {json};
-  for (int frame = job.frames.first; frame <= job.frames.last; ++frame) {
+/// What the frames `first` to `last` write.
+std::vector<std::string> outputs_of(const OutputNames& names, const Job& job, int first, int last) {
+  std::vector<std::string> paths;
+  for (int frame = first; frame <= last; ++frame) {
     const OutputNames of_frame = names_of_frame(names, job, frame);
     paths.insert(paths.end(), {of_frame.exr, of_frame.png});
   }
@@ -129,7 +130,10 @@ int run(const RenderOptions& options, const MethodRegistry& methods) {
   choose_frames(options.frames, &job.frames);
   const Plan plan = make_plan(job);
   Device device(options.device);
-  const Outputs outputs(all_outputs(names, job, options.json), input_files(job));
+  const int first = job.frames.first, last = job.frames.last;
+  std::vector<std::string> at_once = outputs_of(names, job, first, first);
+  at_once.push_back(options.json);
+  const Outputs outputs(at_once, input_files(job), outputs_of(names, job, first + 1, last));
 
   if (!options.quiet) say("{}", describe(plan));
   BuiltJob built(job, plan, device);
