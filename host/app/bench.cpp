@@ -3,6 +3,7 @@
 
 #include "host/app/commands.h"
 #include "host/app/output.h"
+#include "host/app/say.h"
 #include "host/base/interrupt.h"
 #include "host/base/stopwatch.h"
 #include "host/image/image.h"
@@ -19,19 +20,18 @@ struct BenchOptions {
 };
 
 int run(const BenchOptions& options, const MethodRegistry& methods) {
-  for (const std::string& path : {options.json, options.html})
-    if (!path.empty()) prepare_output(path);
+  const Outputs outputs({options.json, options.html});
   Device device(options.device);
   const Stopwatch watch;
   const auto progress = [&](const std::string& what) {
     check_interrupt();
-    if (!options.quiet) fmt::print(stderr, "{:6.1f} s  {}\n", watch.seconds(), what);
+    if (!options.quiet) say("{:6.1f} s  {}\n", watch.seconds(), what);
   };
   const bench::Results results = bench::run_suite(options.suite, device, progress, methods);
   fmt::print("{}", bench_summary(results));
   if (!options.json.empty()) write_file_atomically(options.json, bench_json(results));
   if (!options.html.empty()) write_file_atomically(options.html, bench_page(results));
-  if (!options.quiet) fmt::print(stderr, "took {:.0f} s\n", results.seconds);
+  if (!options.quiet) say("took {:.0f} s\n", results.seconds);
   return 0;
 }
 

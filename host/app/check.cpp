@@ -4,8 +4,11 @@
 #include <optional>
 
 #include "host/app/commands.h"
+#include "host/app/map_options.h"
+#include "host/app/max_memory.h"
 #include "host/app/output.h"
 #include "host/image/image.h"
+#include "host/job/input_files.h"
 #include "host/job/job.h"
 #include "host/render/estimate.h"
 #include "host/render/plan.h"
@@ -18,6 +21,7 @@ struct CheckOptions {
   std::string job, json;
   std::vector<std::string> overrides;
   int device = 0;
+  MaxMemory max_memory;
 };
 
 /// Nothing when there is no device to ask: the job can be checked all the same.
@@ -31,10 +35,11 @@ std::optional<Estimate> try_estimate(const Job& job, const Plan& plan, int devic
 }
 
 int run(const CheckOptions& options, const MethodRegistry& methods) {
-  const Job job = load_job(options.job, options.overrides, methods);
+  const Job job = load_job(options.job, options.overrides, methods, options.max_memory.bytes());
   const Plan plan = make_plan(job);
-  if (!options.json.empty()) prepare_output(options.json);
+  const Outputs outputs({options.json}, input_files(job));
   const std::optional<Estimate> expected = try_estimate(job, plan, options.device);
+  if (expected) log_report(expected->findings);
   if (!options.json.empty()) write_file_atomically(options.json, plan_json(job, plan, expected));
   fmt::print("{}", describe(plan));
   if (expected)
@@ -51,6 +56,7 @@ void add_check(CommandLine& app, Command* chosen, const MethodRegistry& methods)
   command->add_option("job", options->job, "Job file, TOML").required();
   command->add_option("--set", options->overrides, "Override a setting: key.path=value, as often as needed");
   command->add_option("--device", options->device, "Number of the OpenCL device that the estimate is for");
+  add_max_memory(command, &options->max_memory);
   command->add_option("--json", options->json, "Write the plan and the estimate as JSON");
   command->callback([=, &methods] { *chosen = [=, &methods] { return run(*options, methods); }; });
 }

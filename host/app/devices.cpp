@@ -4,16 +4,15 @@
 #include "host/app/commands.h"
 #include "host/app/json_file.h"
 #include "host/app/output.h"
-#include "mica/error.h"
+#include "host/device/no_device.h"
 
 namespace mica::host::app {
 namespace {
 
 int run(const std::string& json_path) {
-  if (!json_path.empty()) prepare_output(json_path);
+  const Outputs outputs({json_path});
   const std::vector<DeviceInfo> devices = list_devices();
-  if (devices.empty())
-    throw DeviceError("no OpenCL device found; on Debian `apt install pocl-opencl-icd` adds the CPU as one");
+  if (devices.empty()) throw no_device();
   nlohmann::json list = nlohmann::json::array();
   for (std::size_t number = 0; number < devices.size(); ++number) {
     const DeviceInfo& info = devices[number];

@@ -81,8 +81,7 @@ int run(const EvalOptions& options) {
                                  options.method.name));
   const std::unique_ptr<MethodSettings> settings = settings_of(options.method);
   check_extension(options.output, {".npy"});
-  prepare_output(options.output);
-  if (!options.json.empty()) prepare_output(options.json);
+  const Outputs outputs({options.output, options.json}, {options.map.path, options.queries});
 
   PhaseTimes times;
   Clock::time_point start = Clock::now();

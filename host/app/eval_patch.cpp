@@ -139,8 +139,7 @@ int evaluate_patches(const PatchEvaluation& options) {
     throw UsageError(fmt::format("--ndf {} needs a --map", method.name()));
   const std::unique_ptr<MethodSettings> settings = settings_of(options.method);
   check_extension(options.output, {".npy"});
-  prepare_output(options.output);
-  if (!options.json.empty()) prepare_output(options.json);
+  const Outputs outputs({options.output, options.json}, {options.map.path, options.queries});
 
   const Stopwatch loading;
   std::optional<double> roughness = options.roughness;

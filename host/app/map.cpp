@@ -11,6 +11,7 @@
 #include "host/app/map_options.h"
 #include "host/app/output.h"
 #include "host/image/image.h"
+#include "host/job/input_files.h"
 #include "host/surface/export.h"
 #include "mica/error.h"
 #include "mica/version.h"
@@ -20,7 +21,7 @@ namespace {
 
 int run(const SurfaceDescription& description, const std::string& recipe, const std::string& output) {
   check_extension(output, {".exr"});
-  prepare_output(output);
+  const Outputs outputs({output}, input_files(description));
   SurfaceReport report;
   const Surface surface = make_surface(description, &report);
   log_report(report);

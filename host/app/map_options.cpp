@@ -2,6 +2,8 @@
 
 #include <spdlog/spdlog.h>
 
+#include "host/base/printable.h"
+
 namespace mica::host::app {
 namespace {
 
@@ -13,11 +15,19 @@ Values words_of() {
 }  // namespace
 
 void add_map_options(CommandLine* command, MapOptions* options) {
-  command->add_option("--map", options->path, "Normal map: an EXR, PNG or TIFF file").type_name("FILE");
+  command->add_option("--map", options->path, "Normal map: an image file, see docs/files.md")
+      .type_name("FILE");
+  command->add_option("--map-part", options->part, "Name or number from 0 of the file's part or page")
+      .type_name("NAME");
+  command
+      ->add_option(
+          "--map-channels", options->channels,
+          "Layer of the file, or names with commas between; default: X, Y, Z or R, G, B, or what is there")
+      .type_name("NAMES");
   command
       ->add_option("--encoding", options->encoding,
                    "What its pixels are: unorm (n = 2c - 1), signed (n = c), height or slope; "
-                   "default: unorm for integer pixels, signed for float pixels")
+                   "default: unorm for integer pixels and floats that are 0..1, signed for other floats")
       .type_name("NAME")
       .check(words_of<Encoding>());
   command->add_option("--green", options->green, "Where a positive green channel leans: up or down the image")
@@ -43,11 +53,13 @@ void add_map_options(CommandLine* command, MapOptions* options) {
                    "For encoding height: texels of height per unit of the image's value")
       .type_name("TEXELS")
       .show_default();
+  add_max_memory(command, &options->max_memory);
 }
 
 Surface load_map(const MapOptions& options, SurfaceReport* report) {
   MapFile file;
   file.path = options.path;
+  file.choice = {options.part, options.channels, options.max_memory.bytes()};
   file.encoding_given = !options.encoding.empty();
   if (file.encoding_given) file.encoding = parse_word<Encoding>(options.encoding).value();
   file.green = parse_word<GreenDirection>(options.green).value();
@@ -63,8 +75,8 @@ Surface load_map(const MapOptions& options, SurfaceReport* report) {
 }
 
 void log_report(const SurfaceReport& report) {
-  for (const std::string& note : report.notes) spdlog::info(note);
-  for (const std::string& warning : report.warnings) spdlog::warn(warning);
+  for (const std::string& note : report.notes) spdlog::info(printable(note));
+  for (const std::string& warning : report.warnings) spdlog::warn(printable(warning));
 }
 
 }  // namespace mica::host::app

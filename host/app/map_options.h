@@ -3,14 +3,16 @@
 #include <string>
 
 #include "host/app/command_line.h"
+#include "host/app/max_memory.h"
 #include "host/surface/surface.h"
 
 namespace mica::host::app {
 
 /// Options that say which normal map and how to read it.
 struct MapOptions {
-  std::string path, encoding, green = "up", interpolation = "bilinear", invalid = "refuse";
+  std::string path, encoding, green = "up", interpolation = "bilinear", invalid = "refuse", part, channels;
   double height_scale = 1;
+  MaxMemory max_memory;
 };
 
 void add_map_options(CommandLine* command, MapOptions* options);

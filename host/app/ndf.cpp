@@ -64,7 +64,6 @@ void check(const NdfOptions& options) {
     throw UsageError("expected either --center, for one image, or --centers, for many");
   check_extension(options.output, options.centers.empty() ? std::vector<std::string>{".exr", ".png"}
                                                           : std::vector<std::string>{".npy"});
-  prepare_output(options.output);
   if (options.sigma.size() == 2) throw UsageError("--sigma: expected TEXELS or TEXELS,TEXELS,DEGREES");
   for (const double value : options.sigma)
     if (!std::isfinite(value)) throw UsageError("--sigma: expected finite numbers");
@@ -129,6 +128,7 @@ int run_centers(const NdfOptions& options) {
 
 int run(const NdfOptions& options) {
   check(options);
+  const Outputs outputs({options.output}, {options.map.path, options.centers});
   if (!options.centers.empty()) return run_centers(options);
   SurfaceReport report;
   const Surface surface = load_map(options.map, &report);

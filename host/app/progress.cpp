@@ -1,4 +1,5 @@
 #include "host/app/progress.h"
+#include "host/app/say.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -24,11 +25,11 @@ void Progress::update(long done, long all) {
   if (terminal_) {
     constexpr long width = 30;
     const long filled = width * done / all;
-    fmt::print(stderr, "\r[{}{}] {}\033[K{}", std::string(filled, '='), std::string(width - filled, ' '),
-               text, done == all ? "\n" : "");
+    say("\r[{}{}] {}\033[K{}", std::string(filled, '='), std::string(width - filled, ' '), text,
+        done == all ? "\n" : "");
   } else if (const long tenths = 10 * done / all; tenths > tenths_) {
     tenths_ = tenths;
-    fmt::print(stderr, "{}\n", text);
+    say("{}\n", text);
   }
 }
 

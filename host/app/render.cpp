@@ -8,9 +8,12 @@
 #include "host/app/commands.h"
 #include "host/app/exit_code.h"
 #include "host/app/frame_range.h"
+#include "host/app/max_memory.h"
 #include "host/app/output.h"
 #include "host/app/progress.h"
+#include "host/app/say.h"
 #include "host/base/interrupt.h"
+#include "host/job/input_files.h"
 #include "host/job/job.h"
 #include "host/render/render.h"
 #include "host/report/report.h"
@@ -23,6 +26,7 @@ struct RenderOptions {
   std::string job, output, json, frames;
   std::vector<std::string> overrides;
   int device = 0;
+  MaxMemory max_memory;
   bool quiet = false;
 };
 
@@ -47,11 +51,24 @@ OutputNames names_of_frame(const OutputNames& names, const Job& job, int frame) 
   return {numbered(names.exr, frame), numbered(names.png, frame)};
 }
 
+/// What the frames `first` to `last` write.
+std::vector<std::string> outputs_of(const OutputNames& names, const Job& job, int first, int last) {
+  std::vector<std::string> paths;
+  for (int frame = first; frame <= last; ++frame) {
+    const OutputNames of_frame = names_of_frame(names, job, frame);
+    paths.insert(paths.end(), {of_frame.exr, of_frame.png});
+  }
+  return paths;
+}
+
 /// Renders the frames of a job one after the other, and keeps on when one fails.
 class FrameLoop {
  public:
   FrameLoop(const RenderOptions& options, const Job& job, const OutputNames& names, const DeviceInfo& device)
       : options_(options), job_(job), names_(names), device_(device) {}
+
+  /// What was found while surfaces and images were read, before a long rendering and not after it.
+  void say_findings(const BuiltJob& built) { say_once(built.notes(), built.warnings()); }
 
   void render(BuiltJob& built, int frame) {
     try {
@@ -86,8 +103,8 @@ class FrameLoop {
     write_png(names.png, result.image, job_.image.exposure, job_.image.tone_map);
     reports_.push_back(render_json(job_, device_, result));
     if (options_.quiet) return;
-    fmt::print(stderr, "{}", render_summary(device_, result));
-    fmt::print(stderr, "wrote     {}{}{}\n", names.exr, names.exr.empty() ? "" : " and ", names.png);
+    say("{}", render_summary(device_, result));
+    say("wrote     {}{}{}\n", names.exr, names.exr.empty() ? "" : " and ", names.png);
   }
 
   void say_once(const std::vector<std::string>& notes, const std::vector<std::string>& warnings) {
@@ -109,17 +126,19 @@ class FrameLoop {
 
 int run(const RenderOptions& options, const MethodRegistry& methods) {
   const OutputNames names = output_names(options);
-  Job job = load_job(options.job, options.overrides, methods);
+  Job job = load_job(options.job, options.overrides, methods, options.max_memory.bytes());
   choose_frames(options.frames, &job.frames);
   const Plan plan = make_plan(job);
   Device device(options.device);
-  const OutputNames first = names_of_frame(names, job, job.frames.first);
-  for (const std::string& path : {first.exr, first.png, options.json})
-    if (!path.empty()) prepare_output(path);
+  const int first = job.frames.first, last = job.frames.last;
+  std::vector<std::string> at_once = outputs_of(names, job, first, first);
+  at_once.push_back(options.json);
+  const Outputs outputs(at_once, input_files(job), outputs_of(names, job, first + 1, last));
 
-  if (!options.quiet) fmt::print(stderr, "{}", describe(plan));
+  if (!options.quiet) say("{}", describe(plan));
   BuiltJob built(job, plan, device);
   FrameLoop loop(options, job, names, device.info());
+  loop.say_findings(built);
   for (int frame = job.frames.first; frame <= job.frames.last; ++frame) loop.render(built, frame);
   if (!options.json.empty()) write_file_atomically(options.json, loop.json());
   return static_cast<int>(loop.exit_code());
@@ -139,6 +158,7 @@ void add_render(CommandLine& app, Command* chosen, const MethodRegistry& methods
                       "Frames A-B, or A, of those that the job has; default all");
   command->add_option("--device", options->device, "Number of the OpenCL device, see `mica devices`");
   command->add_option("--json", options->json, "Write what was done: plan, bytes, seconds, queries/s, audit");
+  add_max_memory(command, &options->max_memory);
   command->add_flag("--quiet", options->quiet, "No progress and no summary");
   command->callback([=, &methods] { *chosen = [=, &methods] { return run(*options, methods); }; });
 }

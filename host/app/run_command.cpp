@@ -1,12 +1,16 @@
 #include "host/app/run_command.h"
 
-#include <fmt/format.h>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <exception>
+#include <iostream>
+#include <system_error>
 
 #include "host/app/about.h"
 #include "host/app/commands.h"
 #include "host/app/exit_code.h"
+#include "host/app/say.h"
 #include "host/base/interrupt.h"
 #include "mica/error.h"
 #include "mica/method.h"
@@ -27,25 +31,39 @@ int parse_and_run(int argc, const char* const* argv, const MethodRegistry& metho
        {add_render, add_check, add_ndf, add_eval, add_map, add_devices, add_selftest, add_bench, add_manual})
     add(app, &chosen, methods);
   if (const std::optional<int> code = app.parse(argc, argv)) return *code;
-  return chosen();
+  const int done = chosen();
+  check_interrupt();  // also when it came too late to stop anything
+  return done;
+}
+
+/// What standard output did not take is lost, and must not look like success.
+int with_results_out(int done) {
+  errno = 0;
+  std::cout.flush();
+  if (std::fflush(stdout) == 0 && !std::ferror(stdout) && std::cout) return done;
+  say("mica: standard output: cannot write: {}\n", std::strerror(errno ? errno : EIO));
+  return code(ExitCode::file);
 }
 
 }  // namespace
 
 int run_command(int argc, const char* const* argv, const MethodRegistry& methods) {
   try {
-    return parse_and_run(argc, argv, methods);
+    return with_results_out(parse_and_run(argc, argv, methods));
   } catch (const Interrupted& interrupted) {
-    fmt::print(stderr, "mica: stopped by signal {}; nothing unfinished was written\n", interrupted.signal());
+    say("mica: stopped by signal {}; nothing unfinished was written\n", interrupted.signal());
     return 128 + interrupted.signal();
   } catch (const Error& error) {
-    fmt::print(stderr, "mica: {}\n", error.what());
+    say("mica: {}\n", presentable(error.what()));
     return code(exit_code_of(error.kind()));
   } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "mica: the host's memory does not suffice\n");
+    say("mica: the host's memory does not suffice\n");
     return code(ExitCode::device);
+  } catch (const std::system_error& error) {  // of printing
+    say("mica: {}\n", presentable(error.what()));
+    return code(ExitCode::file);
   } catch (const std::exception& error) {
-    fmt::print(stderr, "mica: internal error: {}\n", error.what());
+    say("mica: internal error: {}\n", presentable(error.what()));
     return code(ExitCode::device);
   }
 }

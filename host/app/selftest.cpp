@@ -137,7 +137,7 @@ nlohmann::json to_json(const std::vector<Check>& checks) {
 }
 
 int run(int device_index, double evaluations, const std::string& json_path, const MethodRegistry& methods) {
-  if (!json_path.empty()) prepare_output(json_path);
+  const Outputs outputs({json_path});
   Device device(device_index);
   fmt::print("device {}: {}, {}\n\n", device_index, device.info().name, device.info().version);
   fmt::print("{:<48} {:>8} {:>14}\n", "check", "points", "error/allowed");

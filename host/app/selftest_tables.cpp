@@ -1,5 +1,7 @@
 #include "host/app/selftest_tables.h"
 
+#include "host/app/say.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -52,8 +54,8 @@ void ask_more(Device* device, std::uint64_t evaluations, const MethodRegistry& m
         add(more, &*same);
       }
     }
-    fmt::print(stderr, "{:.3g} of {:.3g} evaluations\n", static_cast<double>(evaluated(*results)),
-               static_cast<double>(evaluations));
+    say("{:.3g} of {:.3g} evaluations\n", static_cast<double>(evaluated(*results)),
+        static_cast<double>(evaluations));
   }
 }
 

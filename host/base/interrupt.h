@@ -12,7 +12,8 @@ class Interrupted {
   int signal_;
 };
 
-/// From now on SIGINT and SIGTERM are remembered. A second one ends the process at once.
+/// From now on SIGINT and SIGTERM are remembered, and end the process within a second, also where nothing
+/// looks for them: by 128 and the signal, without leftovers. A second one ends it at once.
 void catch_interrupts();
 
 /// Throws Interrupted when one has come. Long work calls it between batches.

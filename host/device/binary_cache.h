@@ -7,7 +7,8 @@
 namespace mica::host {
 
 /// Program binaries on disk, one file for each (source, options, device, driver), in $XDG_CACHE_HOME/mica or
-/// ~/.cache/mica. A cache that cannot be read or written is no error: the program is built from source.
+/// ~/.cache/mica, which is the user's alone. A binary is loaded only when its length and hash are those that
+/// were stored. A cache that cannot be read or written is no error: the program is built from source.
 class BinaryCache {
  public:
   BinaryCache(const DeviceInfo& info, const std::string& source, const std::string& options);

@@ -5,6 +5,7 @@
 
 #include "host/device/binary_cache.h"
 #include "host/device/kernel_sources.h"
+#include "host/device/no_device.h"
 
 namespace mica::host {
 namespace {
@@ -49,10 +50,24 @@ DeviceInfo describe(const cl::Device& device) {
   return info;
 }
 
+}  // namespace
+
+DeviceError no_device() {
+  const std::string none = "no OpenCL device found; ";
+  for (const cl::Platform& platform : all_platforms())
+    return DeviceError(
+        fmt::format("{}the platform {} is installed but offers none: if it is PoCL, set POCL_CACHE_DIR to a "
+                    "folder that can be "
+                    "written (POCL_DEBUG=error says more)",
+                    none, platform.getInfo<CL_PLATFORM_NAME>()));
+  return DeviceError(none + "on Debian `apt install pocl-opencl-icd` adds the CPU as one");
+}
+
+namespace {
+
 cl::Device choose(int index) {
   const std::vector<cl::Device> devices = all_devices();
-  if (devices.empty())
-    throw DeviceError("no OpenCL device found; on Debian `apt install pocl-opencl-icd` adds the CPU as one");
+  if (devices.empty()) throw no_device();
   if (index < 0 || index >= static_cast<int>(devices.size()))
     throw DeviceError(
         fmt::format("there is no OpenCL device {}; `mica devices` lists 0 to {}", index, devices.size() - 1));
@@ -89,12 +104,13 @@ cl::Program Device::program(const std::string& file, const std::string& options)
   if (found != programs_.end()) return found->second;
 
   const std::string source = expand_kernel_source(file);
-  const BinaryCache cache(info_, source, options);
+  const std::string flags = options + " -w";  // warnings are of the lint, not of whoever renders
+  const BinaryCache cache(info_, source, flags);
   cl::Program program;
   if (!cache.load(context_, device_, &program)) {
     program = cl::Program(context_, source);
     try {
-      program.build({device_}, options.c_str());
+      program.build({device_}, flags.c_str());
     } catch (const cl::Error& error) {
       throw DeviceError(fmt::format("{}\n{}", opencl_error(error, "building " + file + " " + options).what(),
                                     program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device_)));

@@ -5,7 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "host/base/atomic_file.h"
 #include "host/base/words.h"
+#include "host/image/picture.h"
 
 namespace mica::host {
 
@@ -56,12 +58,15 @@ std::string encode_png(int width, int height, const std::vector<std::uint8_t>& s
 /// Linear light in [0, 1] that a preview shows for a radiance.
 double displayed_value(float radiance);
 
-/// Writes bytes to `path`, whole or not at all. Throws FileError.
-void write_file_atomically(const std::string& path, const std::string& bytes);
+/// Reads an image as three channels R, G, B of linear light; a single channel becomes grey. Integers are
+/// taken as sRGB unless the file says another gamma. Throws FileError as read_picture, and for NaN or
+/// infinite pixels.
+Image read_rgb(const std::string& path, const PictureChoice& choice = {}, Findings* findings = nullptr);
 
-/// Reads an EXR, HDR, PNG, TIFF or JPEG image as three channels R, G, B of linear light; a single channel
-/// becomes grey, further channels are left out. 8- and 16-bit images are taken as sRGB. Throws FileError when
-/// it cannot be read, is damaged, claims more pixels than its bytes can hold, or has NaN or infinite pixels.
-Image read_rgb(const std::string& path);
+/// The same of light: by `repair`, infinities become the greatest half float (or the image's brightest pixel
+/// above it) and what is negative 0, noted with their number. Throws FileError besides for what is left: NaN
+/// always.
+Image read_radiance(const std::string& path, const PictureChoice& choice, TexelRepair invalid,
+                    Findings* findings);
 
 }  // namespace mica::host

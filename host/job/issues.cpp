@@ -60,27 +60,6 @@ void Issues::throw_if_any() const {
   throw JobError(std::move(sorted));
 }
 
-std::string printable(std::string_view text) {
-  std::string result;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte < 0x20 || byte == 0x7f) {
-      result += fmt::format("\\x{:02x}", byte);
-    } else {
-      result += c;
-    }
-  }
-  return result;
-}
-
-std::string shortened(std::string_view text) {
-  constexpr std::size_t longest = 80;
-  if (text.size() <= longest) return printable(text);
-  std::size_t end = longest;
-  while (end > 0 && (text[end] & 0xc0) == 0x80) --end;  // do not cut inside a UTF-8 sequence
-  return printable(text.substr(0, end)) + "...";
-}
-
 std::string in_quotes(std::string_view text) {
   return '"' + shortened(text) + '"';
 }

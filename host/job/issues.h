@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "host/base/printable.h"
 #include "host/job/job.h"
 
 namespace mica::host {
@@ -26,12 +27,6 @@ class Issues {
   std::string job_path_;
   std::vector<JobIssue> issues_;
 };
-
-/// `text` with control characters escaped, fit for a terminal.
-std::string printable(std::string_view text);
-
-/// `text` printable, and cut when it is long.
-std::string shortened(std::string_view text);
 
 /// `text` shortened, in quotes.
 std::string in_quotes(std::string_view text);

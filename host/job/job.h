@@ -84,7 +84,8 @@ class JobError : public UsageError {
 /// names
 ///   and that is not there is an issue of the job, reported where it is named.
 /// @param methods that materials may name.
+/// @param max_picture_bytes that reading one of its images may take; 0: half of the machine's memory.
 Job load_job(const std::string& path, const std::vector<std::string>& overrides,
-             const MethodRegistry& methods = MethodRegistry::builtin());
+             const MethodRegistry& methods = MethodRegistry::builtin(), std::uint64_t max_picture_bytes = 0);
 
 }  // namespace mica::host

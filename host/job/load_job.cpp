@@ -110,12 +110,12 @@ void read_root(TableReader& table, Job& job) {
 }  // namespace
 
 Job load_job(const std::string& path, const std::vector<std::string>& overrides,
-             const MethodRegistry& methods) {
-  return read_job(read_text(path), path, overrides, methods);
+             const MethodRegistry& methods, std::uint64_t max_picture_bytes) {
+  return read_job(read_text(path), path, overrides, methods, max_picture_bytes);
 }
 
 Job read_job(const std::string& text, const std::string& path, const std::vector<std::string>& overrides,
-             const MethodRegistry& methods) {
+             const MethodRegistry& methods, std::uint64_t max_picture_bytes) {
   Issues issues(path);
   Job job;
   job.path = path;
@@ -126,7 +126,7 @@ Job read_job(const std::string& text, const std::string& path, const std::vector
   const bool parsed = issues.empty();
   for (const std::string& item : overrides) apply_override(root, item, issues);
   if (parsed) {
-    ReadContext context{issues, std::filesystem::path(path).parent_path()};
+    ReadContext context{issues, std::filesystem::path(path).parent_path(), max_picture_bytes};
     TableReader::read_root(root, context, [&](TableReader& table) { read_root(table, job); });
   }
   issues.throw_if_any();

@@ -55,6 +55,8 @@ EnvironmentLight make_environment(TableReader& light) {
   EnvironmentLight environment;
   light.require("image", "a lat-long EXR or HDR image");
   light.read_file("image", environment.path);
+  light.read_choice(environment.choice);
+  light.read("invalid", environment.invalid);
   light.read("scale", environment.radiance, kPower);
   light.read("rotation", environment.rotation_degrees, closed(-360, 360));
   return environment;

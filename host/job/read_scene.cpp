@@ -99,6 +99,10 @@ void read_shape(TableReader& table, ShapeDescription& shape,
 void read_background(TableReader& table, BackgroundDescription& background) {
   table.read("color", background.color, kRadiance);
   table.read_file("image", background.path);
+  if (table.has("image")) {
+    table.read_choice(background.choice);
+    table.read("invalid", background.invalid);
+  }
   if (table.has("color") && table.has("image")) {
     table.report("image", "found an image beside a color; expected one of them");
   }

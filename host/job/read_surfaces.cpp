@@ -20,6 +20,7 @@ void limit(double& value, double greatest) {
 SurfaceDescription read_map_file(TableReader& surface) {
   MapFile map;
   surface.read_file("file", map.path);
+  surface.read_choice(map.choice);
   map.encoding_given = surface.has("encoding");
   surface.read("encoding", map.encoding);
   surface.read("green", map.green);

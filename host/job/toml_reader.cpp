@@ -257,6 +257,12 @@ void TableReader::read_file(std::string_view key, std::string& path) {
   }
 }
 
+void TableReader::read_choice(PictureChoice& choice) {
+  choice.max_bytes = context_.max_bytes;
+  read("part", choice.part);
+  read("channels", choice.channels);
+}
+
 void TableReader::read_table(std::string_view key, const Visitor& visit) {
   if (const toml::node* node = find(key)) visit_child(*node, path_of(key), std::string(key), visit);
 }

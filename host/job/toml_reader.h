@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "host/base/words.h"
+#include "host/image/picture.h"
 #include "host/job/issues.h"
 
 namespace mica::host {
@@ -41,6 +42,7 @@ using Choices = std::vector<std::pair<std::string_view, T>>;
 struct ReadContext {
   Issues& issues;
   std::filesystem::path folder;  ///< that file names are relative to
+  std::uint64_t max_bytes = 0;   ///< see PictureChoice
 };
 
 /// One table of a job. Each `read` leaves its target alone when the key is absent, and reports a value
@@ -92,6 +94,9 @@ class TableReader {
                       const std::vector<std::string_view>& names);
   /// An existing file; `path` is then what opens it.
   void read_file(std::string_view key, std::string& path);
+
+  /// `part` and `channels`, of a file that is a picture.
+  void read_choice(PictureChoice& choice);
 
   /// The table at `key`, when there is one.
   void read_table(std::string_view key, const Visitor& visit);

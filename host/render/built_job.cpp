@@ -50,6 +50,9 @@ BuiltJob::BuiltJob(const Job& job, const Plan& plan, Device& device)
       surfaces_(make_surfaces()),
       scene_(make_scene()) {
   const Stopwatch watch;
+  const Findings& of_scene = scene_.findings();
+  notes_.insert(notes_.end(), of_scene.notes.begin(), of_scene.notes.end());
+  warnings_.insert(warnings_.end(), of_scene.warnings.begin(), of_scene.warnings.end());
   evaluators_.resize(surfaces_.size());
   brdfs_.resize(surfaces_.size());
   for (std::size_t n = 0; n < surfaces_.size(); ++n) build_evaluator(n);

@@ -41,8 +41,8 @@ class BuiltJob {
   std::size_t device_bytes() const;  ///< of all structures, as allocated
   double device_seconds() const;     ///< that kernels ran so far, by the device's clock
 
-  const std::vector<std::string>& notes() const { return notes_; }        ///< of the surfaces
-  const std::vector<std::string>& warnings() const { return warnings_; }  ///< of the surfaces
+  const std::vector<std::string>& notes() const { return notes_; }        ///< of surfaces and images
+  const std::vector<std::string>& warnings() const { return warnings_; }  ///< of surfaces and images
 
  private:
   Surface make_surface_of(std::size_t n, int frame);

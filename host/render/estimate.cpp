@@ -157,7 +157,8 @@ Estimate estimate(const Job& job, const Plan& plan, Device& device) {
                                                 gathered.bytes_a_point);
   return {static_cast<std::size_t>(scale * static_cast<double>(sampled.all_queries + gathered.queries)),
           build_seconds + scale * (work + gathered.seconds),
-          built.device_bytes() + static_cast<std::size_t>(in_flight)};
+          built.device_bytes() + static_cast<std::size_t>(in_flight),
+          {built.notes(), built.warnings()}};
 }
 
 }  // namespace mica::host

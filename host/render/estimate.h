@@ -2,6 +2,7 @@
 
 #include <cstddef>
 
+#include "host/base/findings.h"
 #include "host/device/device.h"
 #include "host/job/job.h"
 #include "host/render/plan.h"
@@ -13,6 +14,7 @@ struct Estimate {
   std::size_t queries = 0;
   double seconds = 0;            ///< wall clock, without the audit
   std::size_t device_bytes = 0;  ///< of structures and batches, at the most at a time
+  Findings findings;             ///< of the surfaces and images that were read
 };
 
 /// Builds what the plan names and tries it on a sample. Throws mica::Error.

@@ -4,17 +4,17 @@
 #include <cmath>
 
 #include "host/base/constants.h"
-#include "host/image/image.h"
 
 namespace mica::host {
 
-Background::Background(const BackgroundDescription& description) : color_(description.color) {
-  if (description.path.empty()) return;
-  Image image = read_rgb(description.path);
-  width_ = image.width;
-  height_ = image.height;
-  pixels_ = std::move(image.pixels);
+Background::Background(const BackgroundDescription& description, Findings* findings)
+    : color_(description.color) {
+  if (!description.path.empty())
+    *this = Background(read_radiance(description.path, description.choice, description.invalid, findings));
 }
+
+Background::Background(Image image)
+    : color_(Color::Zero()), width_(image.width), height_(image.height), pixels_(std::move(image.pixels)) {}
 
 Color Background::pixel(int column, int row) const {
   column = (column + width_) % width_;

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "host/image/image.h"
 #include "host/scene/description.h"
 
 namespace mica::host {
@@ -11,8 +12,9 @@ namespace mica::host {
 /// The image spans all directions: its middle lies along +y, its right along +x, its top row around +z.
 class Background {
  public:
-  /// Throws FileError for an image that cannot be used.
-  explicit Background(const BackgroundDescription& description);
+  /// Throws FileError for an image that cannot be used. @param findings what was repaired in it.
+  explicit Background(const BackgroundDescription& description, Findings* findings = nullptr);
+  explicit Background(Image image);  ///< of R, G, B
 
   /// @param direction of any length but 0. Bilinear between the centres of pixels.
   Color radiance(const Eigen::Vector3d& direction) const;

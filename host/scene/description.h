@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "host/base/glints_description.h"
+#include "host/image/picture.h"
 
 namespace mica::host {
 
@@ -133,6 +134,8 @@ struct EnvironmentLight {
   std::string path;
   Color radiance{1, 1, 1};      ///< W/(m^2 sr); what the image is multiplied with
   double rotation_degrees = 0;  ///< turns the image about +z, from +x towards +y
+  PictureChoice choice = {};
+  TexelRepair invalid = TexelRepair::repair;
 };
 
 /// What rays that hit nothing see: a colour, or a lat-long image when `path` is not empty.
@@ -140,6 +143,8 @@ struct BackgroundDescription {
   Color color{0, 0, 0};
   std::string path;
   bool is_environment = false;  ///< the scene's environment lights instead
+  PictureChoice choice = {};
+  TexelRepair invalid = TexelRepair::repair;
 };
 
 /// What a camera or a light is at one frame.

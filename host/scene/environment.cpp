@@ -1,7 +1,5 @@
 #include "host/scene/environment.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -9,7 +7,6 @@
 #include "host/image/image.h"
 #include "host/scene/background.h"
 #include "host/scene/piecewise_constant.h"
-#include "mica/error.h"
 
 namespace mica::host {
 namespace {
@@ -29,36 +26,37 @@ double mean_of_bilinear(const std::vector<double>& values, int width, int height
 }
 
 /// Mean of the three channels of each pixel.
-std::vector<double> brightness(const std::string& path, const Image& image) {
+std::vector<double> brightness(const Image& image) {
   std::vector<double> values(image.pixels.size() / 3);
   for (std::size_t pixel = 0; pixel < values.size(); ++pixel) {
     const float* rgb = &image.pixels[3 * pixel];
-    if (std::min({rgb[0], rgb[1], rgb[2]}) < 0)
-      throw FileError(fmt::format("{}: pixel ({}, {}) from the top left is negative, expected radiance", path,
-                                  pixel % static_cast<std::size_t>(image.width),
-                                  pixel / static_cast<std::size_t>(image.width)));
     values[pixel] = (double{rgb[0]} + rgb[1] + rgb[2]) / 3;
   }
   return values;
 }
 
+/// A furnace is an image of a single pixel.
+Image image_of(const EnvironmentLight& light, Findings* findings) {
+  if (light.path.empty()) return {1, 1, {"R", "G", "B"}, {1, 1, 1}, {}};
+  return read_radiance(light.path, light.choice, light.invalid, findings);
+}
+
 }  // namespace
 
-/// One light: its image or constant radiance, and pixels of which rows and columns are equal angles. A
-/// furnace is an image of a single pixel.
+/// One light: its image, and pixels of which rows and columns are equal angles.
 class Environment::Light {
  public:
-  explicit Light(const EnvironmentLight& description)
+  Light(const EnvironmentLight& description, Findings* findings)
+      : Light(description, image_of(description, findings)) {}
+
+  Light(const EnvironmentLight& description, Image image)
       : scale_(description.radiance),
         cos_rotation_(std::cos(description.rotation_degrees * kPi / 180)),
         sin_rotation_(std::sin(description.rotation_degrees * kPi / 180)),
-        image_({Color::Ones(), description.path, false}) {
-    std::vector<double> values = {1};
-    if (!description.path.empty()) {
-      const Image image = read_rgb(description.path);
-      values = brightness(description.path, image);
-      width_ = image.width, height_ = image.height;
-    }
+        width_(image.width),
+        height_(image.height) {
+    const std::vector<double> values = brightness(image);
+    image_ = Background(std::move(image));
     std::vector<double> rows;
     for (int row = 0; row < height_; ++row) {
       std::vector<double> columns;
@@ -113,16 +111,16 @@ class Environment::Light {
 
   Color scale_;
   double cos_rotation_, sin_rotation_;
-  Background image_;
-  int width_ = 1, height_ = 1;
+  int width_, height_;
+  Background image_{BackgroundDescription{}};
   PiecewiseConstant rows_;
   std::vector<PiecewiseConstant> columns_;  // one a row
 };
 
-Environment::Environment(const std::vector<EnvironmentLight>& lights) {
+Environment::Environment(const std::vector<EnvironmentLight>& lights, Findings* findings) {
   std::vector<double> powers;
   for (const EnvironmentLight& description : lights) {
-    auto light = std::make_unique<Light>(description);
+    auto light = std::make_unique<Light>(description, findings);
     if (!(light->power() > 0)) continue;
     powers.push_back(light->power());
     lights_.push_back(std::move(light));

@@ -16,8 +16,10 @@ namespace mica::host {
 /// 12.5): wherever radiance is not zero, neither is the density.
 class Environment {
  public:
-  /// Throws FileError for an image that cannot be used: unreadable, or with negative pixels.
-  explicit Environment(const std::vector<EnvironmentLight>& lights);
+  /// Throws FileError for an image that cannot be used: unreadable, or with pixels that are no radiance and
+  /// not to be repaired.
+  /// @param findings what was repaired in images.
+  explicit Environment(const std::vector<EnvironmentLight>& lights, Findings* findings = nullptr);
   ~Environment();
   Environment(Environment&&) noexcept;
 

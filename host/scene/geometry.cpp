@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 #include <tbb/task_arena.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <variant>
 
 #include "host/scene/fork.h"
@@ -152,9 +154,43 @@ struct ExactHit {
   Hit operator()(const TriangleMesh& mesh) const { return hit_triangle(mesh, found.hit.primID, ray); }
 };
 
+/// Where single precision has enough room for a shape, its own middle serves as origin if it lies far from
+/// there.
+constexpr double kFarAway = 64;
+
+/// Moves a shape to where its coordinates are small. @return the origin that it then is relative to.
+struct Recentre {
+  Eigen::Vector3d operator()(PlaneShape& plane) const { return move(&plane.center, plane.size); }
+  Eigen::Vector3d operator()(SphereShape& sphere) const { return move(&sphere.center, sphere.radius); }
+  Eigen::Vector3d operator()(const TriangleMesh& mesh) const { return mesh.origin; }
+
+ private:
+  static Eigen::Vector3d move(Eigen::Vector3d* center, double extent) {
+    if (!(center->cwiseAbs().maxCoeff() > kFarAway * extent)) return Eigen::Vector3d::Zero();
+    return std::exchange(*center, Eigen::Vector3d::Zero());
+  }
+};
+
+struct BoxOf {
+  Eigen::AlignedBox3d operator()(const PlaneShape& plane) const {
+    const Eigen::Vector3d half(plane.size / 2, plane.size / 2, 0);
+    return {plane.center - half, plane.center + half};
+  }
+  Eigen::AlignedBox3d operator()(const SphereShape& sphere) const {
+    const Eigen::Vector3d half = Eigen::Vector3d::Constant(sphere.radius);
+    return {sphere.center - half, sphere.center + half};
+  }
+  Eigen::AlignedBox3d operator()(const TriangleMesh& mesh) const {
+    Eigen::AlignedBox3d box;
+    for (const Eigen::Vector3f& position : mesh.positions) box.extend(position.cast<double>());
+    return box;
+  }
+};
+
 /// A shape as it is described, which may stand in several places.
 struct Prototype {
   Shape shape;
+  Eigen::Vector3d origin;
   GeometryHandle geometry;
   SceneHandle scene;  ///< holds this shape alone, once it stands somewhere else than described
 };
@@ -183,6 +219,8 @@ struct Geometry::Implementation {
   std::vector<decltype(ShapeDescription::geometry)> descriptions;  ///< one a prototype
   std::vector<Prototype> prototypes;
   std::vector<PlacedShape> placed;  ///< by Embree's geomID, or instID of those that are instances
+  Eigen::Vector3d middle{0, 0,
+                         0};  ///< of the scene, where Embree has its origin; 0 unless all lies far from there
 
   std::size_t prototype_of(const ShapeDescription& description) {
     const auto found = std::find_if(descriptions.begin(), descriptions.end(), [&](const auto& other) {
@@ -190,10 +228,11 @@ struct Geometry::Implementation {
     });
     if (found != descriptions.end()) return static_cast<std::size_t>(found - descriptions.begin());
     Shape shape = std::visit(MakeShape{}, description.geometry);
+    const Eigen::Vector3d origin = std::visit(Recentre{}, shape);
     GeometryHandle geometry = std::visit(MakeEmbreeGeometry{device.get()}, shape);
     rtcCommitGeometry(geometry.get());
     descriptions.push_back(description.geometry);
-    prototypes.push_back({std::move(shape), std::move(geometry), nullptr});
+    prototypes.push_back({std::move(shape), origin, std::move(geometry), nullptr});
     return prototypes.size() - 1;
   }
 
@@ -211,24 +250,36 @@ struct Geometry::Implementation {
     }
     GeometryHandle geometry(rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_INSTANCE));
     rtcSetGeometryInstancedScene(geometry.get(), prototype->scene.get());
-    const Eigen::Matrix<float, 3, 4> matrix = frame.to_scene().matrix().topRows<3>().cast<float>();
+    const Eigen::Affine3d to_embree = Eigen::Translation3d(-middle) * frame.to_scene();
+    const Eigen::Matrix<float, 3, 4> matrix = to_embree.matrix().topRows<3>().cast<float>();
     rtcSetGeometryTransform(geometry.get(), 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, matrix.data());
     rtcCommitGeometry(geometry.get());
     return geometry;
   }
 
-  void add(const ShapeDescription& description) {
+  void place(const ShapeDescription& description) {
     const std::size_t index = prototype_of(description);
-    Prototype& prototype = prototypes[index];
-    const PlacedFrame frame(description.placement);
-    const auto id = static_cast<unsigned>(placed.size());
-    if (frame.is_identity()) {
+    placed.push_back({index, PlacedFrame(description.placement, prototypes[index].origin)});
+  }
+
+  void set_middle() {
+    Eigen::AlignedBox3d box;
+    for (const PlacedShape& shape : placed)
+      box.extend(std::visit(BoxOf{}, prototypes[shape.prototype].shape).transformed(shape.frame.to_scene()));
+    if (!box.isEmpty() && box.center().cwiseAbs().maxCoeff() > 4 * box.sizes().maxCoeff())
+      middle = box.center();
+  }
+
+  bool is_instance(const PlacedShape& shape) const { return !shape.frame.is_identity() || !middle.isZero(0); }
+
+  void attach(unsigned id) {
+    const PlacedShape& shape = placed[id];
+    Prototype& prototype = prototypes[shape.prototype];
+    if (is_instance(shape))
+      rtcAttachGeometryByID(scene.get(), instance(&prototype, shape.frame).get(), id);
+    else
       rtcAttachGeometryByID(scene.get(), prototype.geometry.get(), id);
-    } else {
-      rtcAttachGeometryByID(scene.get(), instance(&prototype, frame).get(), id);
-    }
     check(device.get(), "add a shape");
-    placed.push_back({index, frame});
   }
 };
 
@@ -237,7 +288,9 @@ Geometry::Geometry(const std::vector<ShapeDescription>& shapes) : implementation
   self.device.reset(rtcNewDevice(nullptr));
   if (!self.device) check(nullptr, "start");
   self.scene = self.new_scene();
-  for (const ShapeDescription& shape : shapes) self.add(shape);
+  for (const ShapeDescription& shape : shapes) self.place(shape);
+  self.set_middle();
+  for (unsigned id = 0; id < self.placed.size(); ++id) self.attach(id);
   commit(self.scene.get());
   check(self.device.get(), "build its hierarchy");
 }
@@ -255,7 +308,7 @@ const std::vector<std::string>& Geometry::parts(std::size_t shape) const {
 std::optional<Hit> Geometry::intersect(const Ray& ray) const {
   const Implementation& self = *implementation_;
   RTCRayHit found;
-  set_ray(&found.ray, ray.origin, ray.direction, std::numeric_limits<float>::infinity());
+  set_ray(&found.ray, ray.origin - self.middle, ray.direction, std::numeric_limits<float>::infinity());
   found.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   found.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   RTCIntersectContext context;
@@ -271,14 +324,14 @@ std::optional<Hit> Geometry::intersect(const Ray& ray) const {
   Hit hit = std::visit(ExactHit{local, found}, shape);
   // Exactly edge-on there is no point to name.
   if (!hit.position.allFinite() || !hit.face_normal.allFinite()) return std::nullopt;
-  if (is_instance) hit = placed.frame.to_scene(hit);
+  if (is_instance) hit = placed.frame.to_scene(hit, self.middle);
   hit.shape = index;
   return hit;
 }
 
 bool Geometry::occluded(const Hit& hit, const Eigen::Vector3d& direction, double distance) const {
   RTCRay ray;
-  set_ray(&ray, ray_from(hit, direction).origin, direction, distance);
+  set_ray(&ray, ray_from(hit, direction).origin - implementation_->middle, direction, distance);
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   rtcOccluded1(implementation_->scene.get(), &context, &ray);

@@ -9,9 +9,25 @@
 namespace mica::host {
 namespace {
 
-/// Some 30 roundings of the largest number that goes into an intersection with a primitive of this extent.
-double single_precision_error(const Eigen::Vector3d& position, double extent) {
-  return 4e-6 * std::max(position.cwiseAbs().maxCoeff(), extent);
+/// Along a normal, from what is rounded in each axis: the floor z = 0 stays where it is however large it is
+/// (Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., sec. 6.8).
+/// But a ray that starts exactly there hits it at t = 0, so that a trace of the greatest coordinate remains.
+double error_along(const Eigen::Vector3d& normal, const Eigen::Vector3d& greatest) {
+  constexpr double trace = 1e-10;
+  return kRelativeError * normal.cwiseAbs().dot(greatest) + trace * greatest.maxCoeff();
+}
+
+/// Of a plane through three points: their rounding, and that of the normal that is made of two edges.
+double plane_error(const Eigen::Vector3d& normal, const Eigen::Vector3d& greatest,
+                   const Eigen::Vector3d& edge_b, const Eigen::Vector3d& edge_c) {
+  const Eigen::Vector3d b = edge_b.cwiseAbs(), c = edge_c.cwiseAbs();
+  const Eigen::Vector3d products(b.y() * c.z() + b.z() * c.y(), b.z() * c.x() + b.x() * c.z(),
+                                 b.x() * c.y() + b.y() * c.x());
+  // In the normal's own direction its length cancels.
+  const Eigen::Vector3d sideways = products.cwiseProduct(Eigen::Vector3d::Ones() - normal.cwiseAbs2());
+  const double length = edge_b.cross(edge_c).norm();
+  return std::min(error_along(normal, greatest) + kRelativeError * sideways.dot(greatest) / length,
+                  kRelativeError * (greatest + b + c).maxCoeff());
 }
 
 /// Longitude over u from the +x axis, latitude over v from the south pole.
@@ -43,8 +59,8 @@ Hit hit_plane(const PlaneShape& plane, const Ray& ray) {
   hit.t = (plane.center.z() - ray.origin.z()) / ray.direction.z();
   hit.position = ray.origin + hit.t * ray.direction;
   hit.position.z() = plane.center.z();
-  hit.error = single_precision_error(hit.position, plane.size);
   hit.face_normal = hit.normal = Eigen::Vector3d::UnitZ();
+  hit.error = error_along(hit.normal, {plane.size, plane.size, std::abs(plane.center.z())});
   hit.tangent = Eigen::Vector3d::UnitX();
   hit.dpdu = plane.size * Eigen::Vector3d::UnitX();
   hit.dpdv = plane.size * Eigen::Vector3d::UnitY();
@@ -64,7 +80,7 @@ Hit hit_sphere(const SphereShape& sphere, const Ray& ray, double t_near) {
   hit.t = t_middle + (t_near < t_middle ? -half_chord : half_chord);
   hit.face_normal = hit.normal = (from_center + hit.t * ray.direction).normalized();
   hit.position = sphere.center + sphere.radius * hit.normal;
-  hit.error = single_precision_error(hit.position, sphere.radius);
+  hit.error = kRelativeError * (hit.position.cwiseAbs().maxCoeff() + sphere.radius);
   parameterise_sphere(sphere.radius, &hit);
   return hit;
 }
@@ -86,9 +102,10 @@ Hit hit_triangle(const TriangleMesh& mesh, std::uint32_t triangle, const Ray& ra
   hit.part = mesh.part(triangle);
   hit.t = q.dot(edge_c) / determinant;
   hit.position = a + b * edge_b + c * edge_c;
-  hit.error =
-      single_precision_error(hit.position, edge_b.cwiseAbs().maxCoeff() + edge_c.cwiseAbs().maxCoeff());
   hit.face_normal = edge_b.cross(edge_c).normalized();
+  const Eigen::Vector3d greatest =
+      a.cwiseAbs().cwiseMax((a + edge_b).cwiseAbs()).cwiseMax((a + edge_c).cwiseAbs());
+  hit.error = plane_error(hit.face_normal, greatest, edge_b, edge_c);
   hit.normal = interpolate(mesh.normals, corners, b, c).stableNormalized();
   hit.tangent = interpolate(mesh.tangents, corners, b, c);
   hit.uv = interpolate(mesh.uvs, corners, b, c);

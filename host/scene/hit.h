@@ -17,7 +17,7 @@ struct Ray {
 /// Where a ray meets a shape. Derivatives are those of the tangent plane, in world units per unit of uv.
 struct Hit {
   double t = 0;
-  double error = 0;  ///< distance by which single precision may misplace the surface here, for shadow rays
+  double error = 0;  ///< distance along the normal by which single precision may misplace the surface here
   Eigen::Vector3d position;
   Eigen::Vector3d face_normal;  ///< normal of the plane in which position, dpdu and dpdv lie; unit
   Eigen::Vector3d normal;       ///< smooth over the shape; unit
@@ -27,6 +27,9 @@ struct Hit {
   std::uint32_t shape = 0;      ///< index into SceneDescription::shapes
   std::uint32_t part = 0;       ///< which part of the shape was hit, by Geometry::parts
 };
+
+/// What is left of a number after some 30 roundings to single precision.
+constexpr double kRelativeError = 4e-6;
 
 // The exact point at which a ray meets a shape that single precision has already found to be the first:
 // texture coordinates are needed to 1e-6 of a map, which a float hit does not give.

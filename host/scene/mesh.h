@@ -10,6 +10,7 @@ namespace mica::host {
 
 /// Triangles with one position, unit normal, texture coordinate and tangent a vertex, interpolated linearly.
 struct TriangleMesh {
+  Eigen::Vector3d origin{0, 0, 0};  ///< that positions are relative to: far away floats are coarse
   std::vector<Eigen::Vector3f> positions;
   std::vector<Eigen::Vector3f> normals;
   std::vector<Eigen::Vector2d> uvs;

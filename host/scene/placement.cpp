@@ -7,7 +7,6 @@ namespace mica::host {
 namespace {
 
 constexpr double kDegree = kPi / 180;
-constexpr double kRelativeError = 4e-6;  // what single precision leaves, see hit.cpp
 
 Eigen::Affine3d transform_of(const Placement& placement) {
   const Eigen::Vector3d angles = kDegree * placement.rotate_degrees;
@@ -18,10 +17,10 @@ Eigen::Affine3d transform_of(const Placement& placement) {
 
 }  // namespace
 
-PlacedFrame::PlacedFrame(const Placement& placement)
+PlacedFrame::PlacedFrame(const Placement& placement, const Eigen::Vector3d& origin)
     : is_identity_(placement.scale == Eigen::Vector3d::Ones() && placement.rotate_degrees.isZero(0) &&
-                   placement.translate.isZero(0)),
-      to_scene_(transform_of(placement)),
+                   placement.translate.isZero(0) && origin.isZero(0)),
+      to_scene_(transform_of(placement) * Eigen::Translation3d(origin)),
       to_shape_(to_scene_.inverse()),
       normal_to_scene_(to_shape_.linear().transpose()) {
   if (!(placement.scale.minCoeff() > 0 && to_scene_.matrix().allFinite() && to_shape_.matrix().allFinite()))
@@ -32,12 +31,15 @@ Ray PlacedFrame::to_shape(const Ray& ray) const {
   return {to_shape_ * ray.origin, to_shape_.linear() * ray.direction};
 }
 
-Hit PlacedFrame::to_scene(Hit hit) const {
+Hit PlacedFrame::to_scene(Hit hit, const Eigen::Vector3d& middle) const {
   const Eigen::Matrix3d& linear = to_scene_.linear();
+  // Rays go to the shape's coordinates in single precision, term by term.
+  const Eigen::Vector3d terms =
+      linear.cwiseAbs() * hit.position.cwiseAbs() + (to_scene_.translation() - middle).cwiseAbs();
   hit.position = to_scene_ * hit.position;
-  // No scale stretches more than all of the matrix; moving far away rounds the position again.
-  hit.error = std::max(hit.error * linear.norm(), kRelativeError * hit.position.cwiseAbs().maxCoeff());
   hit.face_normal = (normal_to_scene_ * hit.face_normal).normalized();
+  // No scale stretches more than all of the matrix.
+  hit.error = hit.error * linear.norm() + kRelativeError * hit.face_normal.cwiseAbs().dot(terms);
   hit.normal = (normal_to_scene_ * hit.normal).normalized();
   hit.tangent = linear * hit.tangent;
   hit.dpdu = linear * hit.dpdu;

@@ -100,6 +100,9 @@ Scene::~Scene() = default;
 Scene::Scene(Scene&&) noexcept = default;
 Scene& Scene::operator=(Scene&&) noexcept = default;
 
+const Findings& Scene::findings() const {
+  return implementation_->viewer.shared->findings;
+}
 const Geometry& Scene::geometry() const {
   return implementation_->viewer.shared->geometry;
 }

@@ -101,6 +101,8 @@ class Scene {
   /// rows. Throws UsageError for rows outside the image.
   TracedRows trace(int first_row, int row_count) const;
 
+  /// What was assumed and repaired in the images of backgrounds and environments.
+  const Findings& findings() const;
   const Geometry& geometry() const;
   const Environment& environment() const;
   const std::vector<LightDescription>& lights() const;

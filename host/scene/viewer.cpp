@@ -1,53 +1,15 @@
 #include "host/scene/viewer.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
-#include <algorithm>
-
 #include "host/microfacet/horizon.h"
 #include "host/scene/coat_crossing.h"
 #include "host/scene/footprint.h"
 #include "host/scene/wrap.h"
-#include "mica/error.h"
 
 namespace mica::host {
-namespace {
-
-std::uint32_t material_index(const SceneDescription& description, std::size_t shape,
-                             const std::string& name) {
-  const auto found = std::find_if(description.materials.begin(), description.materials.end(),
-                                  [&](const MaterialDescription& m) { return m.name == name; });
-  if (found == description.materials.end())
-    throw UsageError(fmt::format("shape {}: there is no material '{}'", shape + 1, name));
-  return static_cast<std::uint32_t>(found - description.materials.begin());
-}
-
-PartMaterials materials_of_parts(const SceneDescription& description, const Geometry& geometry) {
-  PartMaterials materials;
-  for (std::size_t n = 0; n < description.shapes.size(); ++n) {
-    const ShapeDescription& shape = description.shapes[n];
-    const std::vector<std::string>& parts = geometry.parts(n);
-    materials.emplace_back(std::max<std::size_t>(parts.size(), 1),
-                           material_index(description, n, shape.material));
-    for (const PartMaterial& wanted : shape.parts) {
-      const auto part = std::find(parts.begin(), parts.end(), wanted.part);
-      if (part == parts.end())
-        throw UsageError(fmt::format("shape {}: found no part '{}'; its parts are: {}", n + 1, wanted.part,
-                                     parts.empty() ? "none" : fmt::format("{}", fmt::join(parts, ", "))));
-      materials[n][static_cast<std::size_t>(part - parts.begin())] =
-          material_index(description, n, wanted.material);
-    }
-  }
-  return materials;
-}
-
-}  // namespace
-
 StaticScene::StaticScene(const SceneDescription& description)
     : geometry(description.shapes),
-      background(description.background),
-      environment(description.environments),
+      background(description.background, &findings),
+      environment(description.environments, &findings),
       shows_environment(description.background.is_environment),
       materials(description.materials),
       part_materials(materials_of_parts(description, geometry)),

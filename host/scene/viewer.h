@@ -13,16 +13,15 @@
 #include "host/scene/glint_material.h"
 #include "host/scene/layered_material.h"
 #include "host/scene/lobes.h"
+#include "host/scene/part_materials.h"
 #include "host/scene/scene.h"
 #include "host/scene/shading.h"
 
 namespace mica::host {
 
-/// Indices of the materials of each shape's parts.
-using PartMaterials = std::vector<std::vector<std::uint32_t>>;
-
 /// What does not change from frame to frame.
 struct StaticScene {
+  Findings findings;  ///< about images of backgrounds and environments
   Geometry geometry;
   Background background;
   Environment environment;

@@ -6,13 +6,13 @@
 #include <vector>
 
 #include "host/base/words.h"
+#include "host/image/picture.h"
 
 namespace mica::host {
 
 enum class Interpolation { nearest, bilinear, bicubic };
 enum class Encoding { unorm, signed_float, height, slope };  ///< `signed` is a keyword: signed_float
 enum class GreenDirection { up, down };
-enum class TexelRepair { repair, refuse };  ///< what to do with NaN, infinite and zero-length texels
 
 template <>
 struct Words<Interpolation> {
@@ -34,16 +34,11 @@ struct Words<GreenDirection> {
   static constexpr Word<GreenDirection> all[] = {{"up", GreenDirection::up}, {"down", GreenDirection::down}};
 };
 
-template <>
-struct Words<TexelRepair> {
-  static constexpr Word<TexelRepair> all[] = {{"repair", TexelRepair::repair},
-                                              {"refuse", TexelRepair::refuse}};
-};
-
 /// A normal map in a file. Settings that the job leaves out are derived from the pixel type and logged.
 struct MapFile {
   std::string path;
-  bool encoding_given = false;  ///< false: unorm for unsigned pixels, signed_float for others, and logged
+  PictureChoice choice = {};
+  bool encoding_given = false;  ///< false: told by the pixels, and logged
   Encoding encoding = Encoding::unorm;
   GreenDirection green = GreenDirection::up;
   TexelRepair invalid = TexelRepair::refuse;

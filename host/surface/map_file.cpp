@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -26,17 +27,61 @@ std::string describe(const MapPixels& pixels) {
   return fmt::format("{}-bit float pixels", pixels.bits);
 }
 
+/// How far normals are from length 1 in the mean, read as they are or as 2c - 1.
+double mean_length_error(const MapPixels& pixels, bool as_unorm) {
+  double sum = 0;
+  for (std::size_t n = 0; n + 2 < pixels.pixels.size(); n += 3) {
+    Eigen::Vector3d normal(pixels.pixels[n], pixels.pixels[n + 1], pixels.pixels[n + 2]);
+    if (as_unorm) normal = 2 * normal - Eigen::Vector3d::Ones();
+    if (normal.allFinite()) sum += std::abs(normal.norm() - 1);
+  }
+  return sum;
+}
+
+/// Normals are offered as 0..1 in float pixels, too: no bump leans one way alone, so that some must be
+/// negative.
+Encoding encoding_of_floats(const MapFile& file, const MapPixels& pixels) {
+  const auto is_negative = [](float value) { return value < 0; };
+  const auto& values = pixels.pixels;
+  if (std::any_of(values.begin(), values.end(), is_negative)) return Encoding::signed_float;
+  if (pixels.channels.size() == 3)
+    return mean_length_error(pixels, true) < mean_length_error(pixels, false) ? Encoding::unorm
+                                                                              : Encoding::signed_float;
+  if (std::all_of(values.begin(), values.end(), [](float value) { return value == 0; }))
+    return Encoding::signed_float;
+  throw UsageError(fmt::format(
+      "{}: found {} without a negative one in two channels; say encoding = \"unorm\" (0..1) or \"signed\"",
+      file.path, describe(pixels)));
+}
+
+/// Whether the third channel holds nothing, so that the first two are a map of two channels (BC5) saved as
+/// RGB.
+bool third_says_nothing(const MapPixels& pixels, Encoding encoding) {
+  if (pixels.channels.size() != 3 || encoding == Encoding::slope || encoding == Encoding::height)
+    return false;
+  const float first = pixels.pixels[2];
+  for (std::size_t n = 2; n < pixels.pixels.size(); n += 3)
+    if (pixels.pixels[n] != first) return false;
+  const bool is_middle = encoding == Encoding::unorm && std::abs(2 * first - 1) <= 1.0f / 127;
+  return first == 0 || is_middle;
+}
+
 Encoding choose_encoding(const MapFile& file, const MapPixels& pixels, SurfaceReport& report) {
   const bool is_unsigned = pixels.type == MapPixels::Type::unsigned_integer;
   if (!file.encoding_given) {
-    if (pixels.channels == 1) {
+    if (pixels.channels.size() == 1) {
       throw UsageError(file.path + ": has one channel; say encoding = \"height\" and its height_scale");
     }
-    const Encoding assumed = is_unsigned ? Encoding::unorm : Encoding::signed_float;
-    report.notes.push_back(fmt::format("encoding {} assumed from {}", word_of(assumed), describe(pixels)));
+    const bool is_float = pixels.type == MapPixels::Type::floating;
+    const Encoding assumed = is_unsigned ? Encoding::unorm
+                             : is_float  ? encoding_of_floats(file, pixels)
+                                         : Encoding::signed_float;
+    report.notes.push_back(
+        fmt::format("encoding {} assumed from {}{}", word_of(assumed), describe(pixels),
+                    is_float && assumed == Encoding::unorm ? ", none of them negative" : ""));
     return assumed;
   }
-  if (pixels.channels == 1 && file.encoding != Encoding::height) {
+  if (pixels.channels.size() == 1 && file.encoding != Encoding::height) {
     throw UsageError(fmt::format("{}: has one channel; encoding {} needs two or three", file.path,
                                  word_of(file.encoding)));
   }
@@ -66,7 +111,8 @@ void report_quantisation(const MapFile& file, Encoding encoding, const MapPixels
   const std::string text = fmt::format(
       "{} hold slopes in steps of {:.2g}; a roughness below that shows the steps, not the surface",
       describe(pixels), step);
-  (pixels.bits <= 8 ? report.warnings : report.notes).push_back(text);
+  const std::string losses = pixels.is_lossy ? fmt::format(", and {} has losses besides", pixels.format) : "";
+  (pixels.bits <= 8 || pixels.is_lossy ? report.warnings : report.notes).push_back(text + losses);
 }
 
 /// How many texels something happened to, and where first.
@@ -89,7 +135,17 @@ struct Tally {
 class Decoder {
  public:
   Decoder(const MapFile& file, Encoding encoding, const MapPixels& pixels, SurfaceReport& report)
-      : file_(file), encoding_(encoding), pixels_(pixels), report_(report) {
+      : file_(file),
+        encoding_(encoding),
+        pixels_(pixels),
+        channels_(static_cast<int>(pixels.channels.size())),
+        report_(report) {
+    if (third_says_nothing(pixels, encoding)) {
+      channels_ = 2;
+      report.notes.push_back(fmt::format("{} is {:g} everywhere: taken as a map of two channels, {} and {}",
+                                         pixels.channels[2], pixels.pixels[2], pixels.channels[0],
+                                         pixels.channels[1]));
+    }
     valid_.assign(static_cast<std::size_t>(pixels.width) * pixels.height, true);
   }
 
@@ -128,12 +184,12 @@ class Decoder {
 
   Eigen::Vector2d decode_texel(std::size_t texel) {
     Eigen::Vector3d n = Eigen::Vector3d::Zero();
-    for (int channel = 0; channel < pixels_.channels; ++channel) n[channel] = value(texel, channel);
-    if (!n.head(pixels_.channels).allFinite()) return invalid(texel);
+    for (int channel = 0; channel < channels_; ++channel) n[channel] = value(texel, channel);
+    if (!n.head(channels_).allFinite()) return invalid(texel);
     if (encoding_ == Encoding::unorm) n = 2 * n - Eigen::Vector3d::Ones();
     if (file_.green == GreenDirection::down) n.y() = -n.y();
     if (encoding_ == Encoding::slope) return on_disk(texel, disk_from_slope(n.head<2>()));
-    if (pixels_.channels == 2) return on_disk(texel, n.head<2>());
+    if (channels_ == 2) return on_disk(texel, n.head<2>());
 
     const double length = n.norm();
     if (length < kShortestNormal) return invalid(texel);
@@ -197,6 +253,7 @@ class Decoder {
   const MapFile& file_;
   Encoding encoding_;
   const MapPixels& pixels_;
+  int channels_;  // that are used
   SurfaceReport& report_;
   std::vector<bool> valid_;
   Tally invalid_, unnormalised_, beyond_rim_;
@@ -219,7 +276,7 @@ std::vector<Eigen::Vector2d> decode_normals(const MapFile& file, const MapPixels
 }
 
 Surface load_map(const MapFile& file, Interpolation interpolation, SurfaceReport& report) {
-  const MapPixels pixels = read_map_pixels(file.path, report);
+  const MapPixels pixels = read_map_pixels(file.path, report, file.choice);
   return Surface(pixels.width, pixels.height, interpolation, decode_normals(file, pixels, report));
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "host/base/findings.h"
 #include "host/surface/description.h"
 
 namespace mica::host {
@@ -41,11 +42,8 @@ class Surface {
   std::vector<Eigen::Vector2d> normals_;  ///< row j = 0 (v near 0) first
 };
 
-/// What loading or synthesising did that its user should know: assumptions, repairs, quantisation.
-struct SurfaceReport {
-  std::vector<std::string> notes;     ///< plain facts ("encoding unorm assumed from 8-bit pixels")
-  std::vector<std::string> warnings;  ///< things that cost accuracy or changed the input
-};
+/// What loading or synthesising did that its user should know.
+using SurfaceReport = Findings;
 
 /// Loads or synthesises; the same description gives the same bits for any number of threads.
 /// @param report filled when not null.

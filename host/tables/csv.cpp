@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <charconv>
+#include <filesystem>
 #include <fstream>
 #include <string_view>
+#include <utility>
 
+#include "host/base/printable.h"
 #include "host/tables/table.h"
 #include "mica/error.h"
 
@@ -19,14 +22,40 @@ std::string_view trim(std::string_view text) {
   return text.substr(first, text.find_last_not_of(blanks) - first + 1);
 }
 
-std::vector<std::string_view> split(std::string_view line) {
+/// R and pandas put names, and some numbers, in quotes.
+std::string_view unquoted(std::string_view cell) {
+  cell = trim(cell);
+  const bool is_quoted = cell.size() >= 2 && cell.front() == '"' && cell.back() == '"';
+  return is_quoted ? trim(cell.substr(1, cell.size() - 2)) : cell;
+}
+
+/// @param separator a blank stands for any number of blanks and tabs, as NumPy writes them.
+std::vector<std::string_view> split(std::string_view line, char separator) {
+  const std::string_view separators = separator == ' ' ? " \t" : separator == ';' ? ";" : ",";
   std::vector<std::string_view> cells;
-  for (std::size_t comma = line.find(','); comma != std::string_view::npos; comma = line.find(',')) {
-    cells.push_back(trim(line.substr(0, comma)));
-    line.remove_prefix(comma + 1);
+  for (std::size_t end; (end = line.find_first_of(separators)) != std::string_view::npos;) {
+    cells.push_back(unquoted(line.substr(0, end)));
+    line.remove_prefix(separator == ' ' ? line.find_first_not_of(separators, end) : end + 1);
   }
-  cells.push_back(trim(line));
+  cells.push_back(unquoted(line));
   return cells;
+}
+
+char separator_of(std::string_view header) {
+  for (const char separator : {',', ';'})
+    if (header.find(separator) != std::string_view::npos) return separator;
+  return ' ';
+}
+
+bool to_number(std::string_view cell, double* value) {
+  if (cell.size() > 1 && cell.front() == '+' && cell[1] != '-') cell.remove_prefix(1);
+  const char* const end = cell.data() + cell.size();
+  const auto [stop, error] = std::from_chars(cell.data(), end, *value);
+  return error == std::errc() && stop == end;
+}
+
+bool is_comment(std::string_view line) {
+  return trim(line).substr(0, 1) == "#";
 }
 
 std::vector<std::string> all_names(const TableColumns& columns) {
@@ -40,17 +69,20 @@ class CsvReader {
  public:
   CsvReader(const std::string& path, const TableColumns& columns)
       : path_(path), columns_(columns), names_(all_names(columns)), stream_(path) {
+    std::error_code ignored;
+    if (std::filesystem::is_directory(path, ignored))
+      throw FileError(path + ": is a folder, expected a table");
     if (!stream_) throw FileError(path + ": no such file, or it cannot be read");
   }
 
   Table read() {
     std::string line;
-    if (!next_line(&line)) fail(fmt::format("no header; expected {}", expected()));
-    read_names(line);
+    bool is_row = read_header(&line);
     Table table;
     table.columns = order_.size();
     table.groups = place_groups();
-    while (next_line(&line)) {
+    for (; is_row || next_line(&line); is_row = false) {
+      if (is_comment(line)) continue;
       read_row(line, &table.values);
       ++table.rows;
     }
@@ -78,15 +110,38 @@ class CsvReader {
     return false;
   }
 
-  void read_names(std::string_view line) {
+  /// The names are in the last comment before the numbers, or in the first line that is no comment.
+  /// @return whether `line` is the first row, which was looked at.
+  bool read_header(std::string* line) {
     constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
-    if (line.substr(0, byte_order_mark.size()) == byte_order_mark) line.remove_prefix(byte_order_mark.size());
+    std::string names;
+    std::size_t at = 0;
+    bool is_there = next_line(line);
+    if (is_there && line->compare(0, byte_order_mark.size(), byte_order_mark) == 0)
+      line->erase(0, byte_order_mark.size());
+    for (; is_there && is_comment(*line); is_there = next_line(line)) names = *line, at = line_number_;
+    double number = 0;
+    const bool is_row =
+        is_there && !names.empty() && to_number(split(trim(*line), separator_of(trim(*line)))[0], &number);
+    if (!is_row && is_there) names = *line, at = line_number_;
+    if (names.empty()) fail(fmt::format("no header; expected {}", expected()));
+    const std::size_t row_at = std::exchange(line_number_, at);
+    read_names(names);
+    line_number_ = row_at;
+    return is_row;
+  }
+
+  void read_names(std::string_view line) {
     line = trim(line);
     if (line.substr(0, 1) == "#") line = trim(line.substr(1));
-    const std::vector<std::string_view> cells = split(line);
+    separator_ = separator_of(line);
+    std::vector<std::string_view> cells = split(line, separator_);
+    has_index_ = separator_ != ' ' && cells[0].empty();  // the names of rows, by pandas and R
+    if (has_index_) cells.erase(cells.begin());
     for (const std::string_view cell : cells) {
       const auto found = std::find(names_.begin(), names_.end(), cell);
-      if (found == names_.end()) fail(fmt::format("the header names \"{}\"; expected {}", cell, expected()));
+      if (found == names_.end())
+        fail(fmt::format("the header names \"{}\"; expected {}", shortened(cell), expected()));
       const auto column = static_cast<std::size_t>(found - names_.begin());
       if (std::count(order_.begin(), order_.end(), column))
         fail(fmt::format("column {} appears twice", *found));
@@ -123,17 +178,16 @@ class CsvReader {
   }
 
   void read_row(std::string_view line, std::vector<double>* values) const {
-    const std::vector<std::string_view> cells = split(line);
+    std::vector<std::string_view> cells = split(trim(line), separator_);
+    if (has_index_) cells.erase(cells.begin());
     if (cells.size() != order_.size())
       fail(fmt::format("{} values; the header names {} columns", cells.size(), order_.size()));
     const std::size_t first = values->size();
     values->resize(first + cells.size());
     for (std::size_t n = 0; n < cells.size(); ++n) {
-      const char* end = cells[n].data() + cells[n].size();
       double value = 0;
-      const auto [stop, error] = std::from_chars(cells[n].data(), end, value);
-      if (error != std::errc() || stop != end)
-        fail(fmt::format("column {}: \"{}\" is not a number", names_[order_[n]], cells[n]));
+      if (!to_number(cells[n], &value))
+        fail(fmt::format("column {}: \"{}\" is not a number", names_[order_[n]], shortened(cells[n])));
       (*values)[first + place_[n]] = value;
     }
   }
@@ -143,6 +197,8 @@ class CsvReader {
   const std::vector<std::string> names_;
   std::ifstream stream_;
   std::size_t line_number_ = 0;
+  char separator_ = ',';
+  bool has_index_ = false;  // a first column that names rows
   std::vector<std::size_t> order_,
       place_;  // which of `names_` each column of the file is, and where in the table
 };

@@ -113,6 +113,7 @@ class HeaderParser {
       if (error == std::errc::result_out_of_range) fail_damaged(path_, "its shape is too large");
       if (error != std::errc()) fail();
       position_ += static_cast<std::size_t>(end - first);
+      take('L');  // a long of Python 2
       values.push_back(value);
       if (!take(',') && peek() != ')') fail();
     }
@@ -164,14 +165,16 @@ Header read_header(const std::string& path, SizedFile* file) {
   return HeaderParser(path, text).parse();
 }
 
-/// Values in the file's order.
+/// Values in the file's order. @param swapped those are big endian.
 template <typename T>
-void read_values(SizedFile* file, bool fortran_order, Table* table) {
+void read_values(SizedFile* file, bool fortran_order, bool swapped, Table* table) {
   std::vector<T> chunk(std::min<std::size_t>(table->values.size(), 1 << 16));
   for (std::size_t first = 0; first < table->values.size(); first += chunk.size()) {
     const std::size_t count = std::min(chunk.size(), table->values.size() - first);
     file->read(chunk.data(), count * sizeof(T), "data");
     for (std::size_t n = 0; n < count; ++n) {
+      auto* const bytes = reinterpret_cast<unsigned char*>(&chunk[n]);
+      if (swapped) std::reverse(bytes, bytes + sizeof(T));
       const std::size_t k = first + n;
       table->values[fortran_order ? k % table->rows * table->columns + k / table->rows : k] = chunk[n];
     }
@@ -183,13 +186,15 @@ void read_values(SizedFile* file, bool fortran_order, Table* table) {
 Table read_npy(const std::string& path) {
   SizedFile file(path);
   const Header header = read_header(path, &file);
-  if (header.type != "<f8" && header.type != "<f4")
+  const bool swapped = header.type.substr(0, 1) == ">";
+  const std::string kind = header.type.substr(std::min<std::size_t>(header.type.size(), 1));
+  if ((header.type.substr(0, 1) != "<" && !swapped) || (kind != "f8" && kind != "f4"))
     fail_unsupported(path, fmt::format("holds values of type \"{}\"", header.type));
   if (header.shape.size() != 2)
     fail_unsupported(path, fmt::format("holds an array of {} dimensions", header.shape.size()));
 
   const std::uint64_t rows = header.shape[0], columns = header.shape[1];
-  const std::uint64_t value_bytes = header.type == "<f8" ? sizeof(double) : sizeof(float);
+  const std::uint64_t value_bytes = kind == "f8" ? sizeof(double) : sizeof(float);
   const std::uint64_t held = file.rest() / value_bytes;
   const bool too_many = columns != 0 && rows > held / columns;
   if (too_many || rows * columns * value_bytes != file.rest())
@@ -197,9 +202,9 @@ Table read_npy(const std::string& path) {
                                    rows, columns, value_bytes, file.rest()));
   Table table{rows, columns, std::vector<double>(rows * columns)};
   if (value_bytes == sizeof(double)) {
-    read_values<double>(&file, header.fortran_order, &table);
+    read_values<double>(&file, header.fortran_order, swapped, &table);
   } else {
-    read_values<float>(&file, header.fortran_order, &table);
+    read_values<float>(&file, header.fortran_order, swapped, &table);
   }
   return table;
 }

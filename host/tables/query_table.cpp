@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cctype>
 #include <filesystem>
 
 #include "mica/error.h"
@@ -42,7 +43,8 @@ void place_groups(const std::string& path, const TableColumns& columns, Table* t
 }  // namespace
 
 Table read_query_table(const std::string& path, const TableColumns& columns) {
-  const std::string extension = std::filesystem::path(path).extension().string();
+  std::string extension = std::filesystem::path(path).extension().string();
+  for (char& letter : extension) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
   if (extension == ".csv") return read_csv(path, columns);
   if (extension != ".npy") throw UsageError(fmt::format("{}: expected a .npy or .csv file of queries", path));
   Table table = read_npy(path);

@@ -25,7 +25,7 @@ struct TableColumns {
       forms;  ///< groups of arrays without names, told by how many columns they have
 };
 
-/// A two-dimensional array of float32 or float64, little endian, C or Fortran order, of a NumPy file
+/// A two-dimensional array of float32 or float64, of either byte order, C or Fortran order, of a NumPy file
 /// (versions 1 to 3 of the format). Sizes are checked against the file's before anything is allocated.
 /// Throws FileError when the file cannot be read or is damaged, UsageError for an array of another kind.
 Table read_npy(const std::string& path);
@@ -34,8 +34,10 @@ Table read_npy(const std::string& path);
 /// when there are columns.
 std::string to_npy(const std::vector<float>& values, std::size_t columns = 0);
 
-/// A comma-separated file. Its first line names the columns, in any order; it may begin with `#`, as NumPy
-/// writes it. Empty lines are left out.
+/// A file of numbers with commas, semicolons or blanks between, as NumPy, pandas and R write it. Its first
+/// line names the columns, in any order; it may be the last of several that begin with `#`. Names and numbers
+/// may be in quotes, and a first column without a name is that of the rows. Empty lines and comments are left
+/// out.
 /// @param columns those that may be there; the table has them in this order.
 /// Throws FileError when the file cannot be read, UsageError naming the line for everything else.
 Table read_csv(const std::string& path, const TableColumns& columns);

@@ -18,7 +18,7 @@ HOST_EDGES = {
     "base": "",
     "microfacet": "base",
     "image": "base",
-    "surface": "base",
+    "surface": "base image",
     "device": "base",
     "reference": "base surface",
     "methods": "base microfacet surface device reference",

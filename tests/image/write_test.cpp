@@ -149,8 +149,10 @@ TEST_F(WriteImage, DevicesAndPipesAreNotReplaced) {
 }
 
 TEST_F(WriteImage, ReasonsOfTheSystemAreNamed) {
-  const std::string name = path(std::string(250, 'n') + ".exr");
-  EXPECT_EQ(error([&] { write_exr(name, gradient()); }), name + ": cannot create: File name too long");
+  const std::string name = path(std::string(252, 'n') + ".exr");
+  EXPECT_EQ(error([&] { write_exr(name, gradient()); }), name + ": cannot write: File name too long");
+  write_exr(path(std::string(251, 'n') + ".exr"), gradient());  // as long as the file system allows
+  std::filesystem::remove(path(std::string(251, 'n') + ".exr"));
   EXPECT_EQ(file_count(), 0u);
 }
 

@@ -38,8 +38,8 @@ TEST(ErrorLists, ReportEverythingInTheOrderOfTheFile) {
           ":7:12: shape.0.material: found \"gold\"; expected a table [material.NAME] of that name, and "
           "there is none\n" +
           path +
-          ":10:16: light.0.position.1: found nan (a float); expected a number in [-1000000, 1000000]\n" +
-          path + ":10:21: light.0.position.2: found true; expected a number in [-1000000, 1000000]");
+          ":10:16: light.0.position.1: found nan (a float); expected a number in [-100000000, 100000000]\n" +
+          path + ":10:21: light.0.position.2: found true; expected a number in [-100000000, 100000000]");
 }
 
 TEST(ErrorLists, FileComesBeforeOverrides) {

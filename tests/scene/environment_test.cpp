@@ -154,9 +154,12 @@ TEST_F(EnvironmentTest, UnusableImagesAreRefused) {
             path("none.exr") + ": cannot read: No such file or directory");
   const std::string sky = image(4, 2, {0, 0, 0, 0, 0, 0, -1, 0});
   EXPECT_EQ(error([&] {
-              Environment({{sky, {1, 1, 1}, 0}});
+              Environment({{sky, {1, 1, 1}, 0, {}, TexelRepair::refuse}});
             }),
-            sky + ": pixel (2, 1) from the top left is negative, expected radiance");
+            sky + ": pixel (2, 1) from the top left is -1, expected radiance, which is not negative");
+  Findings findings;
+  EXPECT_TRUE(Environment({{sky, {1, 1, 1}, 0}}, &findings).is_black());
+  EXPECT_EQ(findings.notes.size(), 1u);
 }
 
 }  // namespace

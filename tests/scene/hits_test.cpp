@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdint>
 #include <random>
+#include <utility>
+#include <vector>
 
 #include "host/base/constants.h"
 #include "host/scene/camera.h"
@@ -188,6 +190,47 @@ TEST(Geometry, OccludesUpToTheLight) {
   EXPECT_FALSE(geometry.occluded(*below, {0, 0, 1}, 1.4)) << "a light before the sphere";
   EXPECT_FALSE(geometry.occluded(*below, {1, 0, 0.01}, INFINITY));
   EXPECT_FALSE(geometry.occluded(*below, {0, 0, -1}, INFINITY)) << "the other side of the plane";
+}
+
+ShapeDescription placed_plane(double size, const Eigen::Vector3d& at,
+                              const Eigen::Vector3d& turn = {0, 0, 0}) {
+  return {PlaneShape{{0, 0, 0}, size}, "", {{1, 1, 1}, turn, at}};
+}
+
+TEST(Geometry, WhatIsNearIsInTheWayHoweverFarAndLargeTheSceneIs) {
+  for (const double height : {0.1, 0.01, 0.001})
+    for (const auto& [far, floor] :
+         std::vector<std::pair<double, double>>{{0, 4}, {1e3, 4}, {1e4, 4}, {1e5, 4}, {0, 1e3}, {0, 1e5}}) {
+      const Eigen::Vector3d at = Eigen::Vector3d::Constant(far), up(0, 0, height);
+      const Geometry geometry({placed_plane(floor, at), placed_plane(2, at + up)});
+      for (double x = -0.9; x < 1; x += 0.173) {
+        const Ray ray{at + Eigen::Vector3d(x, 0, height / 2), Eigen::Vector3d(0.1, 0.2, -1)};
+        const auto hit = geometry.intersect(ray);
+        ASSERT_TRUE(hit && hit->shape == 0) << height << " " << far << " " << floor;
+        EXPECT_TRUE(geometry.occluded(*hit, Eigen::Vector3d(0.1, 0, 1).normalized(), 2))
+            << height << " " << far << " " << floor;
+      }
+    }
+}
+
+TEST(Geometry, NothingIsInItsOwnWay) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  for (int n = 0; n < 2000; ++n) {
+    const auto draw = [&](double scale) {
+      return Eigen::Vector3d(scale * Eigen::Vector3d(uniform(random), uniform(random), uniform(random)));
+    };
+    const double size = std::exp2(10 * uniform(random));
+    const Eigen::Vector3d at = draw(std::exp2(10 * uniform(random)));
+    ShapeDescription shape = placed_plane(size, at, draw(180));
+    if (n % 4 == 0) shape.placement = {};  // exactly in z = 0, where nothing is rounded
+    if (n % 2) shape.geometry = SphereShape{{0, 0, 0}, size / 2};
+    const Geometry geometry({shape});
+    const auto hit = geometry.intersect({shape.placement.translate + draw(3 * size), draw(1)});
+    if (!hit) continue;
+    const Eigen::Vector3d leaving = hit->face_normal + 0.9 * draw(1).normalized();
+    EXPECT_FALSE(geometry.occluded(*hit, leaving.normalized(), INFINITY)) << n;
+  }
 }
 
 TEST(Geometry, RefusesShapesWithoutExtent) {

@@ -58,7 +58,7 @@ std::uint32_t crc(const std::string& bytes) {
 }
 
 TEST_F(BadFiles, Missing) {
-  expect_refused(path("nothing.exr"), "no such file");
+  expect_refused(path("nothing.exr"), "No such file");
 }
 
 TEST_F(BadFiles, PathThroughAFile) {
@@ -81,9 +81,9 @@ TEST_F(BadFiles, Empty) {
 
 TEST_F(BadFiles, NotAnImage) {
   for (const std::string name : {"a.exr", "a.png", "a.tif"}) {
-    expect_refused(write_bytes(name, "x"), "not an EXR, PNG or TIFF image");
-    expect_refused(write_bytes(name, "[image]\nwidth = 1280\n"), "not an EXR, PNG or TIFF image");
-    expect_refused(write_bytes(name, std::string(10000, '\0')), "not an EXR, PNG or TIFF image");
+    expect_refused(write_bytes(name, "x"), "not an image that Mica knows");
+    expect_refused(write_bytes(name, "[image]\nwidth = 1280\n"), "not an image that Mica knows");
+    expect_refused(write_bytes(name, std::string(10000, '\0')), "not an image that Mica knows");
   }
 }
 
@@ -156,9 +156,10 @@ TEST_F(BadFiles, HugeTiffHeader) {
 TEST_F(BadFiles, ManyChannels) {
   const auto name_channels = [](OIIO::ImageSpec& spec) {
     spec.channelnames.clear();
-    for (int channel = 0; channel < 65; ++channel) spec.channelnames.push_back("c" + std::to_string(channel));
+    for (int channel = 0; channel < 1025; ++channel)
+      spec.channelnames.push_back("c" + std::to_string(channel));
   };
-  expect_refused(write("a.exr", 1, 1, 65, std::vector<float>(65), name_channels), "a map has at most");
+  expect_refused(write("a.exr", 1, 1, 1025, std::vector<float>(1025), name_channels), "a map has at most");
 }
 
 TEST_F(BadFiles, DamagedExrHeader) {

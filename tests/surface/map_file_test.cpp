@@ -206,8 +206,40 @@ TEST_F(MapFileTest, WrongLengthsAreNormalisedAndCounted) {
 
 TEST_F(MapFileTest, AsksWhetherTheEncodingIsRight) {
   SurfaceReport report;
-  load(map_file(write<float>("a.exr", 1, 1, 3, {0.5f, 0.5f, 1.0f})), &report);  // unorm stored as float
+  const auto file = write<float>("a.exr", 1, 1, 3, {0.5f, 0.5f, 1.0f});  // unorm stored as float
+  load(map_file(file, Encoding::signed_float), &report);
   EXPECT_TRUE(mentions(report.warnings, "is the encoding right?"));
+}
+
+TEST_F(MapFileTest, FloatsWithoutANegativeAreUnorm) {
+  SurfaceReport report;
+  const Surface surface = rough_surface();
+  std::vector<float> image = to_signed_rgb(surface);
+  for (float& value : image) value = 0.5f * value + 0.5f;
+  const auto half = [](OIIO::ImageSpec& spec) { spec.set_format(OIIO::TypeDesc::HALF); };
+  EXPECT_LT(largest_difference(load(map_file(write("a.exr", 32, 32, 3, image, half)), &report), surface),
+            2e-3);
+  EXPECT_TRUE(
+      mentions(report.notes, "encoding unorm assumed from 16-bit float pixels, none of them negative"));
+  EXPECT_TRUE(report.warnings.empty());
+  const auto two = [](OIIO::ImageSpec& spec) { spec.channelnames = {"R", "G"}; };
+  const auto unclear = write<float>("b.exr", 1, 1, 2, {0.5f, 0.6f}, two);
+  EXPECT_NE(message_of<UsageError>([&] { load(map_file(unclear)); }).find("say encoding"), std::string::npos);
+}
+
+TEST_F(MapFileTest, EmptyBlueIsAMapOfTwoChannels) {
+  const Surface surface = rough_surface();
+  const std::vector<float> normals = to_signed_rgb(surface);
+  for (const int blue : {0, 127, 128}) {
+    std::vector<std::uint8_t> image;
+    for (std::size_t n = 0; n < normals.size(); ++n)
+      image.push_back(
+          static_cast<std::uint8_t>(n % 3 == 2 ? blue : std::lround(255 * (0.5 * normals[n] + 0.5))));
+    SurfaceReport report;
+    EXPECT_LT(largest_difference(load(map_file(write("a.png", 32, 32, 3, image)), &report), surface),
+              std::sqrt(2.0) / 255);
+    EXPECT_TRUE(mentions(report.notes, "taken as a map of two channels, R and G")) << blue;
+  }
 }
 
 TEST_F(MapFileTest, NormalsBelowTheSurfaceMoveToTheRim) {
@@ -319,15 +351,20 @@ TEST_F(MapFileTest, NamesOtherThanRgbKeepTheirOrder) {
   EXPECT_LT((load(map_file(file)).texel(0, 0) - Eigen::Vector2d(0.36, 0.48)).norm(), 1e-7);
 }
 
-TEST_F(MapFileTest, DataWindowIsThePeriod) {
-  const auto crop = [](OIIO::ImageSpec& spec) {
+TEST_F(MapFileTest, DisplayWindowIsThePeriod) {
+  const auto part = [](OIIO::ImageSpec& spec) {
     spec.x = 3, spec.y = 5, spec.full_width = spec.full_height = 64;
   };
+  const auto more = [](OIIO::ImageSpec& spec) {
+    spec.x = spec.y = -1, spec.full_width = spec.full_height = 1;
+  };
+  const auto image = flat_but(3, 3, 1, 1, {0.6f, 0, 0.8f});
+  const auto crop = map_file(write("a.exr", 3, 3, 3, image, part));
+  EXPECT_NE(message_of<FileError>([&] { load(crop); }).find("data window"), std::string::npos);
   SurfaceReport report;
-  const Surface surface =
-      load(map_file(write("a.exr", 2, 3, 3, flat_but(2, 3, 0, 0, {0.6f, 0, 0.8f}), crop)), &report);
-  EXPECT_EQ(surface.width(), 2);
-  EXPECT_NEAR(surface.texel(0, 2).x(), 0.6, 1e-7);
+  const Surface surface = load(map_file(write("b.exr", 3, 3, 3, image, more)), &report);
+  EXPECT_EQ(surface.width(), 1);
+  EXPECT_NEAR(surface.texel(0, 0).x(), 0.6, 1e-7);
   EXPECT_TRUE(mentions(report.notes, "data window"));
 }
 

@@ -78,7 +78,6 @@ TEST_F(QueryTables, RefuseOtherArrays) {
   expect_refusal("a.npy", npy_bytes("|O", false, "(20, 7)", data), "usage",
                  "\"|O\"; expected a float32 or float64");
   expect_refusal("a.npy", npy_bytes("<i8", false, "(20, 7)", data), "usage", "\"<i8\"");
-  expect_refusal("a.npy", npy_bytes(">f8", false, "(20, 7)", data), "usage", "\">f8\"");
   std::string records = npy_bytes("", false, "(20,)", data);
   records.replace(records.find("''"), 2, "[('u', '<f8')]");
   expect_refusal("a.npy", records, "usage", "holds records");
@@ -138,6 +137,48 @@ TEST_F(QueryTables, HoldWhatTheFileSays) {
   EXPECT_EQ(query.footprint.cov_uv(1, 1), 5);
   EXPECT_EQ(query.half_vector, Eigen::Vector2d(0.6, -0.7));
   EXPECT_EQ(query.roughness, 0.08);
+}
+
+/// NumPy, pandas and R, by their several ways of writing one row.
+TEST_F(QueryTables, AreReadAsOthersWriteThem) {
+  const std::string names = "u,v,cuu,cuv,cvv,s,t", row = "0.5,0.25,1e-3,0,1e-3,0.1,-0.05";
+  const auto blanks = [](std::string text, char separator) {
+    std::replace(text.begin(), text.end(), ',', separator);
+    return text + "\n";
+  };
+  const std::vector<std::pair<std::string, std::string>> files = {
+      {"plain.csv", names + "\n" + row + "\n"},
+      {"PLAIN.CSV", names + "\n" + row + "\n"},
+      {"plus.csv", names + "\n+5.0e-01,+2.5e-01,+1e-3,+0.0,+1e-3,+1e-1,-5e-2\n"},
+      {"quoted.csv", "\"u\",\"v\",\"cuu\",\"cuv\",\"cvv\",\"s\",\"t\"\n" + row + "\n"},
+      {"row_names.csv", "\"\",\"u\",\"v\",\"cuu\",\"cuv\",\"cvv\",\"s\",\"t\"\n\"1\"," + row + "\n"},
+      {"index.csv", "," + names + "\n0," + row + "\n"},
+      {"comments.csv", "# made today\n# " + names + "\n" + row + "\n# the end\n"},
+      {"comment_above.csv", "# made today\n" + names + "\n" + row + "\n"},
+      {"blanks.csv", "# " + blanks(names, ' ') + "  " + blanks(row, ' ')},
+      {"tabs.csv", blanks(names, '\t') + blanks(row, '\t')},
+      {"semicolons.csv", blanks(names, ';') + blanks(row, ';')}};
+  for (const auto& [file, content] : files) {
+    ASSERT_EQ(refusal(file, content), "accepted") << file;
+    const QueryTable table(path(file), 0.01);
+    ASSERT_EQ(table.size(), 1u) << file;
+    EXPECT_EQ(table.query(0).footprint.mean_uv, Eigen::Vector2d(0.5, 0.25)) << file;
+    EXPECT_EQ(table.query(0).half_vector, Eigen::Vector2d(0.1, -0.05)) << file;
+  }
+  std::filesystem::create_directory(path("folder.csv"));
+  EXPECT_THROW(QueryTable(path("folder.csv"), 0.01), FileError);
+}
+
+TEST_F(QueryTables, ArraysMayBeBigEndianAndOfPython2) {
+  const std::vector<double> values = {0.5, 0.25, 1e-3, 0, 1e-3, 0.1, -0.05};
+  std::string data(reinterpret_cast<const char*>(values.data()), 7 * 8), swapped;
+  for (std::size_t n = 0; n < 7; ++n)
+    swapped.append(data.rend() - static_cast<long>(8 * n) - 8, data.rend() - static_cast<long>(8 * n));
+  for (const std::string& bytes :
+       {npy_bytes("<f8", false, "(1L, 7L)", data), npy_bytes(">f8", false, "(1, 7)", swapped)}) {
+    ASSERT_EQ(refusal("a.npy", bytes), "accepted");
+    EXPECT_EQ(QueryTable(path("a.npy"), 0.01).query(0).half_vector, Eigen::Vector2d(0.1, -0.05));
+  }
 }
 
 /// Arrays of 14 columns: the lobe's covariance and the half vector's turn.
