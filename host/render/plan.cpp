@@ -150,9 +150,9 @@ Plan make_plan(const Job& job) {
 
   std::size_t block = plan.rows_a_block * queries_a_row;
   if (plan.gathers_light)  // of each sample's directions two questions, in batches; see gather_light
-    block += 2 * std::min<std::size_t>(plan.queries_a_batch,
-                                       static_cast<std::size_t>(plan.rows_a_block) * job.image.width *
-                                           job.image.subpixels * job.image.subpixels * plan.samples);
+    block += 2 * std::min<std::size_t>(plan.queries_a_batch, static_cast<std::size_t>(plan.rows_a_block) *
+                                                                 job.image.width * job.image.subpixels *
+                                                                 job.image.subpixels * plan.samples);
   for (PlannedEvaluator& evaluator : plan.evaluators) {
     plan_structure(job, &evaluator);
     plan.host_bytes += evaluator.host_bytes;

@@ -1,6 +1,7 @@
 // `mica render` of jobs with frames.
 #include <OpenImageIO/imageio.h>
 
+
 #include <nlohmann/json.hpp>
 
 #include "tests/app/command.h"
@@ -79,14 +80,17 @@ TEST_F(FramesCommand, DependOnTheirNumberAlone) {
   ASSERT_EQ(mica("render job.toml -o b.exr --frames 4 --quiet").code, 0);
   EXPECT_EQ(pixels("a.0004.exr"), pixels("b.0004.exr"));
 
-  // Frame 4 is 2 s after frame 0; two thirds of the way between the light's keys.
+  // Frame 4 is 2 s after frame 0; two thirds of the way between the light's keys, which lie as far from (0,
+  // 1, -0.8) on either side: beyond it by a third of that angle.
+  const double length = std::hypot(1.0, 0.8), x = length * std::tan(std::atan(0.3 / length) / 3);
   std::string still = kJob;
   const auto replace = [&](const std::string& from, const std::string& to) {
     still.replace(still.find(from), from.size(), to);
   };
   replace("[frames]\nrange = [2, 5]\nrate = 2\n", "");
   replace("wind_speed = 3", "wind_speed = 3\ntime = 2");
-  still = still.substr(0, still.find("direction = [0.3")) + "direction = [-0.1, 1.0, -0.8]\n";
+  still = still.substr(0, still.find("direction = [0.3")) + "direction = [" + std::to_string(-x) +
+          ", 1.0, -0.8]\n";
   write("still.toml", still);
   ASSERT_EQ(mica("render still.toml -o still.exr --quiet").code, 0);
   const std::vector<float> moving = pixels("a.0004.exr"), standing = pixels("still.exr");
