@@ -75,12 +75,12 @@ Scene::Scene(const SceneDescription& description, int width, int height, PixelSe
   pixels.takes_first_order.resize(materials, false);
   pixels.normal_change.resize(materials, Eigen::Matrix2d::Zero());
   const PinholeCamera camera(description.camera, width, height);
-  implementation_.reset(
-      new Implementation{{std::make_shared<const StaticScene>(description), camera,
-                          make_layers(description.materials, masking_alpha), description.lights, std::move(gathering)},
-                         std::move(pixels),
-                         width,
-                         height});
+  implementation_.reset(new Implementation{
+      {std::make_shared<const StaticScene>(description), camera,
+       make_layers(description.materials, masking_alpha), description.lights, std::move(gathering)},
+      std::move(pixels),
+      width,
+      height});
 }
 
 Scene::Scene(const SceneDescription& description, int width, int height, int subpixels,

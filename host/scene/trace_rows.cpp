@@ -122,9 +122,11 @@ class BlockTracer {
     if (rows_.row_count == 0) return std::move(rows_);
     if (pixels_.fits) fit_pixels();
     place_samples();
-    std::vector<RowQueries> queries(static_cast<std::size_t>(rows_.row_count + 2 * margin_));
+    const int places = rows_.row_count + 2 * margin_;
+    std::vector<RowQueries> queries(static_cast<std::size_t>(places));
     tbb::parallel_for(-margin_, rows_.row_count + margin_, [&](int row) {
-      RowQueries* here = &queries[static_cast<std::size_t>(row + margin_)];
+      const int place = row + margin_;
+      RowQueries* here = &queries[static_cast<std::size_t>(place)];
       if (row >= 0 && row < rows_.row_count) write_fits(row, here);
       sample_row(row, here);
     });
@@ -295,9 +297,11 @@ void BlockTracer::sample_row(int row, RowQueries* queries) {
 void BlockTracer::sample_cell(int row, int column, std::uint32_t first_sample, RowQueries* queries) {
   const int n = pixels_.subpixels;
   std::vector<SeenPoint> points;
-  for (int k = 0; k < n * n; ++k)
-    points.push_back(viewer_.look(column + (k % n + 0.5) / n, first_row_ + row + (k / n + 0.5) / n,
+  for (int k = 0; k < n * n; ++k) {
+    const int right = k % n, down = k / n;
+    points.push_back(viewer_.look(column + (right + 0.5) / n, first_row_ + row + (down + 0.5) / n,
                                   shadow_sample(key(row, column), k, n)));
+  }
   const std::vector<std::vector<Eigen::Matrix2d>> turns = turns_of(points);
   const bool owned = row >= 0 && row < rows_.row_count && column >= 0 && column < width_;
   const auto pixel = owned ? static_cast<std::uint32_t>(row * width_ + column) : GlintQuery::kNone;
@@ -319,38 +323,47 @@ void BlockTracer::sample_cell(int row, int column, std::uint32_t first_sample, R
       static_cast<std::uint16_t>(std::min<std::size_t>(queries->size() - before, 65535));
 }
 
-/// The half vectors' turns over the samples of a pixel, from their neighbours in it that lie on the same
-/// surface; none where there is no such neighbour along both axes.
+/// A lamp's half vector's change a pixel to the right and down, at point k of a pixel of n x n: by
+/// differences to its neighbours in the pixel that lie on the same surface in the lamp's light. None where it
+/// has none along one of both axes.
+std::optional<Eigen::Matrix2d> half_vector_change(const std::vector<SeenPoint>& points, int n, int k,
+                                                  std::size_t lamp) {
+  const SeenPoint& middle = points[static_cast<std::size_t>(k)];
+  const auto is_alike = [&](const SeenPoint& point) {
+    return point.hit && point.faces_eye && point.hit->shape == middle.hit->shape &&
+           point.hit->part == middle.hit->part && point.lamps[lamp].shines;
+  };
+  const int place[2] = {k % n, k / n}, stride[2] = {1, n};
+  Eigen::Matrix2d change;
+  for (int axis = 0; axis < 2; ++axis) {
+    int ends[2] = {0, 0};  // steps to the neighbours
+    for (const int step : {-1, 1}) {
+      const int to = place[axis] + step, index = k + step * stride[axis];
+      if (to >= 0 && to < n && is_alike(points[static_cast<std::size_t>(index)])) ends[step > 0] = step;
+    }
+    if (ends[0] == ends[1]) return std::nullopt;
+    const auto half_vector = [&](int step) -> const Eigen::Vector2d& {
+      const int index = k + step * stride[axis];
+      return points[static_cast<std::size_t>(index)].lamps[lamp].half_vector;
+    };
+    change.col(axis) = (half_vector(ends[1]) - half_vector(ends[0])) * n / (ends[1] - ends[0]);
+  }
+  return change;
+}
+
+/// The half vectors' turns over the samples of a pixel, by sample and lamp.
 std::vector<std::vector<Eigen::Matrix2d>> BlockTracer::turns_of(const std::vector<SeenPoint>& points) const {
-  const int n = pixels_.subpixels;
   std::vector<std::vector<Eigen::Matrix2d>> turns(points.size());
-  for (int k = 0; k < n * n && pixels_.fits; ++k) {
-    const SeenPoint& point = points[static_cast<std::size_t>(k)];
+  for (std::size_t k = 0; k < points.size() && pixels_.fits; ++k) {
+    const SeenPoint& point = points[k];
     if (!point.hit || !point.faces_eye || !pixels_.takes_first_order[point.material]) continue;
-    const int axis_place[2] = {k % n, k / n}, axis_step[2] = {1, n};
-    std::vector<Eigen::Matrix2d> of_lamps(point.lamps.size(), Eigen::Matrix2d::Zero());
+    turns[k].assign(point.lamps.size(), Eigen::Matrix2d::Zero());
     for (std::size_t lamp = 0; lamp < point.lamps.size(); ++lamp) {
       if (!point.lamps[lamp].shines) continue;
-      Eigen::Matrix2d dh = Eigen::Matrix2d::Zero();
-      bool known = true;
-      for (int axis = 0; axis < 2; ++axis) {
-        const auto neighbour = [&](int step) -> const SeenPoint* {
-          if (axis_place[axis] + step < 0 || axis_place[axis] + step >= n) return nullptr;
-          const SeenPoint& other = points[static_cast<std::size_t>(k + step * axis_step[axis])];
-          const bool alike = other.hit && other.faces_eye && other.hit->shape == point.hit->shape &&
-                             other.hit->part == point.hit->part && other.lamps[lamp].shines;
-          return alike ? &other : nullptr;
-        };
-        const SeenPoint *before = neighbour(-1), *after = neighbour(1);
-        known = known && (before || after);
-        const Eigen::Vector2d &from = (before ? *before : point).lamps[lamp].half_vector,
-                              &to = (after ? *after : point).lamps[lamp].half_vector;
-        dh.col(axis) = (to - from) * n / ((before ? 1 : 0) + (after ? 1 : 0) + (known ? 0 : 1));
-      }
-      const double sigma = lattice_filter_.sigma_pixels, roughness = point.lamps[lamp].seen.roughness;
-      if (known && dh.norm() * sigma > kLeastTurn * roughness) of_lamps[lamp] = turn_over(point.duv, dh);
+      const auto change = half_vector_change(points, pixels_.subpixels, static_cast<int>(k), lamp);
+      const double least = kLeastTurn * point.lamps[lamp].seen.roughness / lattice_filter_.sigma_pixels;
+      if (change && change->norm() > least) turns[k][lamp] = turn_over(point.duv, *change);
     }
-    turns[static_cast<std::size_t>(k)] = std::move(of_lamps);
   }
   return turns;
 }

@@ -100,8 +100,8 @@ void Viewer::ask(const SeenPoint& point, double sigma_pixels, const SamplePlace&
       queries->lit.push_back(lit_brdf(query, point, lamp.incident));
       continue;
     }
-    const Color weight = glints ? glints->weight(*point.hit, places.front(), point.frame, lamp.seen)
-                                : lamp.seen.glint_weight;
+    const Color weight =
+        glints ? glints->weight(*point.hit, places.front(), point.frame, lamp.seen) : lamp.seen.glint_weight;
     query.weight = weight.cwiseProduct(lamp.incident.irradiance).cast<float>();
     if (!(query.weight.maxCoeff() > 0)) continue;
     if (!turns.empty()) query.query.half_vector_turn = turns[n];

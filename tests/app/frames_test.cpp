@@ -1,7 +1,7 @@
 // `mica render` of jobs with frames.
 #include <OpenImageIO/imageio.h>
 
-
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "tests/app/command.h"

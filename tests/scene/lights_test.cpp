@@ -8,8 +8,8 @@
 #include "host/base/constants.h"
 #include "host/scene/camera.h"
 #include "host/scene/scene.h"
-#include "tests/scene/pixel_radiance.h"
 #include "host/scene/shading.h"
+#include "tests/scene/pixel_radiance.h"
 
 namespace mica::host::lights_test {
 namespace {
