@@ -154,7 +154,8 @@ TEST_F(Manual, VersionNamesCommitCompilerAndPlatforms) {
                                           "(g|clang)\\+\\+ [0-9][^;]*; .+\\)\n")))
       << outcome.out;
   ASSERT_EQ(mica("devices --json devices.json").code, 0);
-  for (const nlohmann::json& device : nlohmann::json::parse(bytes(path("devices.json"))).at("devices"))
+  const auto report = nlohmann::json::parse(bytes(path("devices.json")));
+  for (const nlohmann::json& device : report.at("devices"))
     EXPECT_NE(outcome.out.find(device.at("platform").get<std::string>() + ", OpenCL "), std::string::npos)
         << outcome.out;
 }
