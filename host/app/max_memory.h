@@ -17,7 +17,8 @@ inline void add_max_memory(CommandLine* command, MaxMemory* memory) {
   command
       ->add_option("--max-memory", memory->mebibytes,
                    "Most memory that reading an image file may take; default half of the machine's")
-      .type_name("MIB");
+      .type_name("MIB")
+      .check(between(1, 1 << 24));
 }
 
 }  // namespace mica::host::app

@@ -121,7 +121,8 @@ void BuiltJob::go_to(int frame) {
     build_seconds_ += building.seconds();
   }
   const Stopwatch moving;
-  scene_ = scene_.with_view(camera_at(job_.scene, frame), lights_at(job_.scene, frame), masking_alphas());
+  scene_ = scene_.with_view(camera_at(job_.scene, frame), lights_at(job_.scene, frame), masking_alphas(),
+                            pixels());
   scene_seconds_ = moving.seconds();
 }
 

@@ -45,6 +45,13 @@ void complete(std::vector<double>* masking_alpha, std::size_t materials) {
   masking_alpha->resize(materials, kDefaultMaskingAlpha);
 }
 
+void complete(PixelSettings* pixels, std::size_t materials) {
+  if (pixels->subpixels < 1 || pixels->subpixels > 16)
+    throw UsageError(fmt::format("subpixels: found {}, expected 1 to 16", pixels->subpixels));
+  pixels->takes_first_order.resize(materials, false);
+  pixels->normal_change.resize(materials, Eigen::Matrix2d::Zero());
+}
+
 }  // namespace
 
 void add_samples(const TracedRows& rows, const std::vector<Eigen::Vector3d>& sample_radiance,
@@ -66,14 +73,11 @@ struct Scene::Implementation {
 Scene::Scene(const SceneDescription& description, int width, int height, PixelSettings pixels,
              std::vector<double> masking_alpha, LightGathering gathering) {
   if (width < 1 || height < 1) throw UsageError(fmt::format("image of {} x {} pixels", width, height));
-  if (pixels.subpixels < 1 || pixels.subpixels > 16)
-    throw UsageError(fmt::format("subpixels: found {}, expected 1 to 16", pixels.subpixels));
   const std::size_t materials = description.materials.size();
   complete(&masking_alpha, materials);
   check_lights(description.lights);
   gathering.patch_materials.resize(materials, false);
-  pixels.takes_first_order.resize(materials, false);
-  pixels.normal_change.resize(materials, Eigen::Matrix2d::Zero());
+  complete(&pixels, materials);
   const PinholeCamera camera(description.camera, width, height);
   implementation_.reset(new Implementation{
       {std::make_shared<const StaticScene>(description), camera,
@@ -123,8 +127,9 @@ const LayeredMaterial& Scene::layers(std::uint32_t material) const {
 }
 
 Scene Scene::with_view(const CameraDescription& camera, const std::vector<LightDescription>& lights,
-                       const std::vector<double>& masking_alpha) const {
+                       const std::vector<double>& masking_alpha, PixelSettings pixels) const {
   const Implementation& self = *implementation_;
+  complete(&pixels, self.viewer.shared->materials.size());
   std::vector<double> alphas = masking_alpha;
   complete(&alphas, self.viewer.shared->materials.size());
   check_lights(lights);
@@ -135,7 +140,7 @@ Scene Scene::with_view(const CameraDescription& camera, const std::vector<LightD
       new Implementation{{self.viewer.shared, PinholeCamera(camera, self.width, self.height),
                           same ? self.viewer.layers : make_layers(self.viewer.shared->materials, alphas),
                           lights, self.viewer.gathering},
-                         self.pixels,
+                         std::move(pixels),
                          self.width,
                          self.height}));
 }

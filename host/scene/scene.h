@@ -94,8 +94,9 @@ class Scene {
   Scene& operator=(Scene&&) noexcept;
 
   /// The same shapes and background from another camera under other lights; they are shared, not built again.
+  /// @param masking_alpha, pixels as in the constructor: maps may have changed, too.
   Scene with_view(const CameraDescription& camera, const std::vector<LightDescription>& lights,
-                  const std::vector<double>& masking_alpha) const;
+                  const std::vector<double>& masking_alpha, PixelSettings pixels) const;
 
   /// Traces rows [first_row, first_row + row_count). The result depends on nothing but the scene and the
   /// rows. Throws UsageError for rows outside the image.

@@ -97,6 +97,17 @@ TEST_F(FramesCommand, DependOnTheirNumberAlone) {
   for (std::size_t n = 0; n < moving.size(); ++n) EXPECT_NEAR(moving[n], standing[n], 1e-5f) << n;
 }
 
+// How a pixel's filter is cut follows the map, which is another one in each frame.
+TEST_F(FramesCommand, DependOnTheirNumberAloneWhereFootprintsAreFitted) {
+  const std::string settings =
+      " --quiet --set image.filter=gaussian --set material.metal.ndf=triangles --set "
+      "material.water.ndf=triangles"
+      " --set material.water.roughness=0.003";
+  ASSERT_EQ(mica("render job.toml -o a.exr" + settings).code, 0);
+  ASSERT_EQ(mica("render job.toml -o b.exr --frames 4" + settings).code, 0);
+  EXPECT_EQ(pixels("a.0004.exr"), pixels("b.0004.exr"));
+}
+
 TEST_F(FramesCommand, GoOnWhenOneFails) {
   std::filesystem::create_directory(path("a.0003.exr"));
   const Outcome outcome = mica("render job.toml -o a.exr --frames 2-4 --json a.json --quiet");
