@@ -56,7 +56,7 @@ class FramesCommand : public CommandTest {
 
   std::vector<float> pixels(const std::string& file) const {
     const auto input = OIIO::ImageInput::open(path(file));
-    std::vector<float> values(24 * 16 * 3);
+    std::vector<float> values(input ? input->spec().image_pixels() * input->spec().nchannels : 0);
     EXPECT_TRUE(input && input->read_image(0, 0, 0, -1, OIIO::TypeFloat, values.data())) << file;
     return values;
   }
@@ -99,10 +99,12 @@ TEST_F(FramesCommand, DependOnTheirNumberAlone) {
 
 // How a pixel's filter is cut follows the map, which is another one in each frame.
 TEST_F(FramesCommand, DependOnTheirNumberAloneWhereFootprintsAreFitted) {
-  const std::string settings =
-      " --quiet --set image.filter=gaussian --set material.metal.ndf=triangles --set "
-      "material.water.ndf=triangles"
-      " --set material.water.roughness=0.003";
+  std::string settings = " --quiet";
+  for (const char* set :
+       {"image.filter=gaussian", "image.subpixels=4", "image.width=96", "image.height=64",
+        "image.aovs=['queries']", "accuracy.tolerance=0.001", "material.metal.ndf=triangles",
+        "material.water.ndf=triangles", "material.water.roughness=0.03", "material.water.repeat=[8,8]"})
+    settings += std::string(" --set \"") + set + "\"";
   ASSERT_EQ(mica("render job.toml -o a.exr" + settings).code, 0);
   ASSERT_EQ(mica("render job.toml -o b.exr --frames 4" + settings).code, 0);
   EXPECT_EQ(pixels("a.0004.exr"), pixels("b.0004.exr"));
