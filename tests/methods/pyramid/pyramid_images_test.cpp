@@ -63,10 +63,11 @@ TEST(PyramidImages, KeepOnePercentWhereTheyAreDrawnFromALevel) {
 TEST(PyramidImages, KeepOnePercentWhereTheyAreDrawnFromACompactLevel) {
   PyramidSettings settings;
   settings.levels_bytes = 400'000;
-  const Query query = footprint(spectrum(), 0.9, 0.2, 64, 50, 0.02);
-  PyramidEvaluator pyramid(device(), spectrum(), settings);
+  const Surface surface = spectrum();
+  const Query query = footprint(surface, 0.9, 0.2, 64, 50, 0.02);
+  PyramidEvaluator pyramid(device(), surface, settings);
   EXPECT_EQ(pyramid.level(*pyramid.choose(query)).shape().record_bits, 8);
-  expect_image(spectrum(), query, {{0, 0}, 1, 30}, Way::level, settings);
+  expect_image(surface, query, {{0, 0}, 1, 30}, Way::level, settings);
 }
 TEST(PyramidImages, KeepOnePercentWhereTheyAreDrawnFromTexels) {
   expect_image(spectrum(), footprint(spectrum(), 0.98, 0.5, 9, 6, 0.005), {{0.1, 0}, 0.2, 31}, Way::texels);
