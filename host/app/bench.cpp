@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "host/app/commands.h"
+#include "host/app/device_option.h"
 #include "host/app/output.h"
 #include "host/app/say.h"
 #include "host/base/interrupt.h"
@@ -15,13 +16,13 @@ namespace {
 
 struct BenchOptions {
   std::string suite = "quick", json, html;
-  int device = 0;
+  DeviceOption device;
   bool quiet = false;
 };
 
 int run(const BenchOptions& options, const MethodRegistry& methods) {
   const Outputs outputs({options.json, options.html});
-  Device device(options.device);
+  Device device(options.device.index());
   const Stopwatch watch;
   const auto progress = [&](const std::string& what) {
     check_interrupt();
@@ -51,9 +52,7 @@ void add_bench(CommandLine& app, Command* chosen, const MethodRegistry& methods)
   command->add_option("--json", options->json, "Writes every number as JSON").type_name("FILE");
   command->add_option("--html", options->html, "Writes a page with plots and pictures; it needs no network")
       .type_name("FILE");
-  command->add_option("--device", options->device, "OpenCL device, by its number in `mica devices`")
-      .type_name("N")
-      .show_default();
+  add_device_option(command, &options->device);
   command->add_flag("--quiet", options->quiet, "No progress");
   command->callback([=, &methods] { *chosen = [=, &methods] { return run(*options, methods); }; });
 }

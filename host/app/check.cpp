@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "host/app/commands.h"
+#include "host/app/device_option.h"
 #include "host/app/map_options.h"
 #include "host/app/max_memory.h"
 #include "host/app/output.h"
@@ -20,17 +21,17 @@ namespace {
 struct CheckOptions {
   std::string job, json;
   std::vector<std::string> overrides;
-  int device = 0;
+  DeviceOption device;
   MaxMemory max_memory;
 };
 
 /// Nothing when there is no device to ask: the job can be checked all the same.
-std::optional<Estimate> try_estimate(const Job& job, const Plan& plan, int device_index) {
+std::optional<Estimate> try_estimate(const Job& job, const Plan& plan, const DeviceOption& option) {
   if (list_devices().empty()) {
     spdlog::warn("no OpenCL device found: the time is not estimated");
     return std::nullopt;
   }
-  Device device(device_index);
+  Device device(option.index());
   return estimate(job, plan, device);
 }
 
@@ -55,7 +56,7 @@ void add_check(CommandLine& app, Command* chosen, const MethodRegistry& methods)
   CommandLine* command = app.add_subcommand("check", "Validate a job and print its plan; render nothing");
   command->add_option("job", options->job, "Job file, TOML").required();
   command->add_option("--set", options->overrides, "Override a setting: key.path=value, as often as needed");
-  command->add_option("--device", options->device, "Number of the OpenCL device that the estimate is for");
+  add_device_option(command, &options->device);
   add_max_memory(command, &options->max_memory);
   command->add_option("--json", options->json, "Write the plan and the estimate as JSON");
   command->callback([=, &methods] { *chosen = [=, &methods] { return run(*options, methods); }; });

@@ -14,6 +14,7 @@ using Command = std::function<int()>;
 /// Each adds its subcommand to `app`. When it is called, `*chosen` is set. The methods have to outlive the
 /// command.
 void add_render(CommandLine& app, Command* chosen, const MethodRegistry& methods);
+void add_join(CommandLine& app, Command* chosen, const MethodRegistry& methods);
 void add_check(CommandLine& app, Command* chosen, const MethodRegistry& methods);
 void add_ndf(CommandLine& app, Command* chosen, const MethodRegistry& methods);
 void add_eval(CommandLine& app, Command* chosen, const MethodRegistry& methods);

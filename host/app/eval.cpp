@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "host/app/commands.h"
+#include "host/app/device_option.h"
 #include "host/app/eval_patch.h"
 #include "host/app/evaluation.h"
 #include "host/app/json_file.h"
@@ -27,7 +28,7 @@ struct EvalOptions {
   MethodOptions method;
   std::string quantity = "ndf", queries, output, json, part = "all";
   std::optional<double> roughness;
-  int device = 0;
+  DeviceOption device;
 };
 
 struct PhaseTimes {
@@ -173,9 +174,7 @@ void add_eval(CommandLine& app, Command* chosen, const MethodRegistry& methods) 
       ->add_option("--json", options->json,
                    "Writes what was done: map, device, bytes, seconds, queries a second")
       .type_name("FILE");
-  command->add_option("--device", options->device, "OpenCL device, by its number in `mica devices`")
-      .type_name("N")
-      .show_default();
+  add_device_option(command, &options->device);
   command->callback([options, chosen] { *chosen = [options] { return run(*options); }; });
 }
 

@@ -150,7 +150,7 @@ int evaluate_patches(const PatchEvaluation& options) {
   table.check([&](const ViewQuery& query) { return view_problem(method, query, subject.map()); });
   const double load_seconds = loading.seconds();
   const Stopwatch building;
-  Device device(options.device);
+  Device device(options.device.index());
   const std::unique_ptr<PatchBrdf> brdf = method.make_brdf(&device, subject.map(), *settings);
   const double build_seconds = building.seconds();
   const Stopwatch evaluating;

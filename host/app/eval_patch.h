@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "host/app/device_option.h"
 #include "host/app/map_options.h"
 #include "host/app/method_options.h"
 #include "host/surface/surface.h"
@@ -28,7 +29,7 @@ struct PatchEvaluation {
   std::string quantity, queries, output, json;  ///< quantity: one of patch_quantities()
   std::string part = "all";
   std::optional<double> roughness;
-  int device = 0;
+  DeviceOption device;
 };
 
 /// "brdf", "energy" and "sample".

@@ -15,11 +15,11 @@
 #include "mica/error.h"
 
 namespace mica::host::app {
-OpenEvaluator open_evaluator(const Method& method, const MethodSettings& settings, int device_index,
+OpenEvaluator open_evaluator(const Method& method, const MethodSettings& settings, const DeviceOption& device,
                              const Surface* surface) {
   method.check(settings);
   OpenEvaluator open;
-  if (method.traits().device) open.device = std::make_unique<Device>(device_index);
+  if (method.traits().device) open.device = std::make_unique<Device>(device.index());
   open.evaluator = method.make(open.device.get(), surface, settings);
   return open;
 }

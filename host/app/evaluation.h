@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "host/app/device_option.h"
 #include "host/device/device.h"
 #include "host/methods/evaluator.h"
 #include "host/methods/method.h"
@@ -20,10 +21,10 @@ struct OpenEvaluator {
   std::unique_ptr<Evaluator> evaluator;
 };
 
-/// @param device_index as `mica devices` prints it.
+/// @param device asked only for a method that needs one.
 /// @param surface has to outlive the evaluator; null for a method without a map.
 /// Throws DeviceError, and UsageError for settings that the method cannot keep.
-OpenEvaluator open_evaluator(const Method& method, const MethodSettings& settings, int device_index,
+OpenEvaluator open_evaluator(const Method& method, const MethodSettings& settings, const DeviceOption& device,
                              const Surface* surface);
 
 /// Logs what a method that chooses among others chose.

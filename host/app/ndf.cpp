@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "host/app/commands.h"
+#include "host/app/device_option.h"
 #include "host/app/evaluation.h"
 #include "host/app/map_options.h"
 #include "host/app/method_options.h"
@@ -28,7 +29,8 @@ struct NdfOptions {
   std::string output, centers;
   std::vector<double> center_uv, sigma, window = {0, 0, 1};
   double roughness = 0;
-  int size = 512, device = 0;
+  int size = 512;
+  DeviceOption device;
 };
 
 /// The footprint with standard deviations `sigma` = (a) or (a, b, degrees from +u to the axis of a), texels.
@@ -191,9 +193,7 @@ void add_ndf(CommandLine& app, Command* chosen, const MethodRegistry& methods) {
   command->add_option("-o,--output", options->output, "The image, .exr or .png; with --centers .npy")
       .required()
       .type_name("FILE");
-  command->add_option("--device", options->device, "OpenCL device, by its number in `mica devices`")
-      .type_name("N")
-      .show_default();
+  add_device_option(command, &options->device);
   command->callback([options, chosen] { *chosen = [options] { return run(*options); }; });
 }
 

@@ -1,148 +1,146 @@
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <filesystem>
-#include <optional>
-#include <set>
 
 #include "host/app/commands.h"
-#include "host/app/exit_code.h"
-#include "host/app/frame_range.h"
+#include "host/app/device_option.h"
+#include "host/app/frame_list.h"
+#include "host/app/frame_loop.h"
+#include "host/app/json_log.h"
 #include "host/app/max_memory.h"
 #include "host/app/output.h"
-#include "host/app/progress.h"
+#include "host/app/picture_names.h"
 #include "host/app/say.h"
 #include "host/base/interrupt.h"
 #include "host/job/input_files.h"
 #include "host/job/job.h"
-#include "host/render/render.h"
 #include "host/report/report.h"
 #include "mica/error.h"
+#include "mica/version.h"
 
 namespace mica::host::app {
 namespace {
 
 struct RenderOptions {
-  std::string job, output, json, frames;
+  std::string job, output, json, log, frames, shard, rows;
   std::vector<std::string> overrides;
-  int device = 0;
+  DeviceOption device;
   MaxMemory max_memory;
-  bool quiet = false;
+  bool quiet = false, skip_finished = false;
 };
 
-/// FILE.exr and its preview FILE.png; a name that ends in .png asks for the preview alone.
-struct OutputNames {
-  std::string exr, png;
-};
-OutputNames output_names(const RenderOptions& options) {
-  namespace fs = std::filesystem;
-  const fs::path wanted = options.output.empty()
-                              ? fs::path("out") / fs::path(options.job).stem().concat(".exr")
-                              : fs::path(options.output);
-  if (wanted.extension() == ".png") return {"", wanted.string()};
-  if (wanted.extension() == ".exr")
-    return {wanted.string(), fs::path(wanted).replace_extension(".png").string()};
-  throw UsageError(fmt::format("-o {}: expected a file name that ends in .exr or .png", wanted.string()));
-}
+/// What is written of frames, and where the log is.
+struct Targets {
+  const PictureNames names;
+  const PictureShare share;
 
-/// Names of one frame's files; numbered when the job has frames.
-OutputNames names_of_frame(const OutputNames& names, const Job& job, int frame) {
-  if (!job.frames.given) return names;
-  return {numbered(names.exr, frame), numbered(names.png, frame)};
-}
-
-/// What the frames `first` to `last` write.
-std::vector<std::string> outputs_of(const OutputNames& names, const Job& job, int first, int last) {
-  std::vector<std::string> paths;
-  for (int frame = first; frame <= last; ++frame) {
-    const OutputNames of_frame = names_of_frame(names, job, frame);
-    paths.insert(paths.end(), {of_frame.exr, of_frame.png});
+  std::vector<std::string> of_frames(const Job& job, const std::vector<int>& frames) const {
+    std::vector<std::string> paths;
+    for (const int frame : frames) {
+      const PictureNames of_frame = names_of_frame(names, job, frame, share);
+      paths.insert(paths.end(), {of_frame.exr, of_frame.png});
+    }
+    return paths;
   }
-  return paths;
-}
+};
 
-/// Renders the frames of a job one after the other, and keeps on when one fails.
-class FrameLoop {
+/// One call of `mica render`.
+class RenderRun {
  public:
-  FrameLoop(const RenderOptions& options, const Job& job, const OutputNames& names, const DeviceInfo& device)
-      : options_(options), job_(job), names_(names), device_(device) {}
+  RenderRun(const RenderOptions& options, const MethodRegistry& methods)
+      : options_(options), methods_(methods), log_(options.log) {}
 
-  /// What was found while surfaces and images were read, before a long rendering and not after it.
-  void say_findings(const BuiltJob& built) { say_once(built.notes(), built.warnings()); }
-
-  void render(BuiltJob& built, int frame) {
+  /// Does all of it; what goes wrong is in the log, too.
+  int run() {
     try {
-      render_and_write(built, frame);
-      ++done_;
+      const ExitCode code = render();
+      log_.write("ended", {{"code", static_cast<int>(code)}});
+      return static_cast<int>(code);
+    } catch (const Interrupted& interrupted) {
+      log_.write("stopped", {{"signal", interrupted.signal()}});
+      throw;
     } catch (const Error& error) {
-      if (!job_.frames.given) throw;
-      spdlog::error("frame {}: {}", frame, error.what());
-      reports_.push_back(failure_json(frame, error.what()));
-      failed_ = exit_code_of(error.kind());
+      tell_failure(word_of_kind(error.kind()), error.what());
+      throw;
+    } catch (const std::exception& error) {
+      tell_failure("device", error.what());
+      throw;
     }
   }
 
-  /// The JSON of all frames, or of the only one.
-  std::string json() const { return job_.frames.given ? frames_json(reports_) : reports_.front(); }
-
-  ExitCode exit_code() const {
-    if (!failed_) return ExitCode::done;
-    return done_ > 0 ? ExitCode::some_images_failed : *failed_;
-  }
-
  private:
-  void render_and_write(BuiltJob& built, int frame) {
-    const OutputNames names = names_of_frame(names_, job_, frame);
-    Progress progress(job_.frames.given ? fmt::format("rows of frame {}", frame) : "rows", options_.quiet);
-    const RenderResult result = render_frame(built, frame, device_, [&](int rows, int all) {
-      check_interrupt();
-      progress.update(rows, all);
-    });
-    say_once(result.surface_notes, result.surface_warnings);
-    if (!names.exr.empty()) write_exr(names.exr, result.image);
-    write_png(names.png, result.image, job_.image.exposure, job_.image.tone_map);
-    reports_.push_back(render_json(job_, device_, result));
-    if (options_.quiet) return;
-    say("{}", render_summary(device_, result));
-    say("wrote     {}{}{}\n", names.exr, names.exr.empty() ? "" : " and ", names.png);
+  ExitCode render() {
+    const PictureNames names = picture_names(options_.job, options_.output);
+    const Job job = load_job(options_.job, options_.overrides, methods_, options_.max_memory.bytes());
+    frames_ = chosen_frames(options_.frames, job.frames);
+    const Targets targets{names, picture_share(options_.shard, options_.rows, job.image.height)};
+    if (!targets.share.is_all() && names.exr.empty())
+      throw UsageError(fmt::format("-o {}: expected a name that ends in .exr for a part", names.png));
+    const Plan plan = make_plan(job);
+    tell_start(job, targets);
+    std::vector<std::string> at_once = targets.of_frames(job, {frames_.front()});
+    at_once.push_back(options_.json);
+    if (std::filesystem::is_regular_file(options_.log)) at_once.push_back(options_.log);
+    const Outputs outputs(at_once, input_files(job),
+                          targets.of_frames(job, {frames_.begin() + 1, frames_.end()}));
+
+    FrameLoop loop({job, targets.names, targets.share, log_, options_.quiet});
+    const std::vector<int> wanted = skip_finished(job, targets, &loop);
+    if (!wanted.empty()) render_frames(job, plan, wanted, &loop);
+    if (!options_.json.empty()) write_file_atomically(options_.json, loop.json());
+    return loop.exit_code();
   }
 
-  void say_once(const std::vector<std::string>& notes, const std::vector<std::string>& warnings) {
-    for (const std::string& note : notes)
-      if (said_.insert(note).second) spdlog::info("{}", note);
-    for (const std::string& warning : warnings)
-      if (said_.insert(warning).second) spdlog::warn("{}", warning);
+  /// @return the frames that are not finished.
+  std::vector<int> skip_finished(const Job& job, const Targets& targets, FrameLoop* loop) {
+    if (!options_.skip_finished) return frames_;
+    const std::string inputs = hash_of_inputs(job);
+    std::vector<int> rest;
+    for (const int frame : frames_) {
+      if (is_finished({job, targets.names, targets.share, log_}, frame, inputs))
+        loop->skip(frame);
+      else
+        rest.push_back(frame);
+    }
+    return rest;
+  }
+
+  void render_frames(const Job& job, const Plan& plan, const std::vector<int>& frames, FrameLoop* loop) {
+    frames_ = frames;
+    Device device(options_.device.index());
+    if (!options_.quiet) say("{}", describe(plan));
+    log_.write("phase", {{"phase", "build"}, {"device", device.info().name}});
+    BuiltJob built(job, plan, device, frames.front());
+    loop->say_findings(built);
+    for (const int frame : frames) {
+      loop->render(built, frame, device.info());
+      frames_.erase(frames_.begin());
+    }
+  }
+
+  void tell_start(const Job& job, const Targets& targets) {
+    nlohmann::json details = {{"mica", version()},
+                              {"job", options_.job},
+                              {"hash", fmt::format("{:016x}", job.hash)},
+                              {"frames", frame_list(frames_)},
+                              {"output", targets.names.exr.empty() ? targets.names.png : targets.names.exr}};
+    if (job.frames.given) details["range"] = {job.frames.first, job.frames.last};
+    if (targets.share.rows)
+      details["rows"] = {targets.share.rows->first,
+                         targets.share.rows->first + targets.share.rows->count - 1};
+    log_.write("started", details);
+  }
+
+  /// Of what concerns no frame alone.
+  void tell_failure(const std::string& kind, const std::string& message) {
+    log_.write("failed", {{"kind", kind}, {"message", message}, {"frames", frame_list(frames_)}});
   }
 
   const RenderOptions& options_;
-  const Job& job_;
-  const OutputNames& names_;
-  const DeviceInfo& device_;
-  std::set<std::string> said_;
-  std::vector<std::string> reports_;
-  int done_ = 0;
-  std::optional<ExitCode> failed_;
+  const MethodRegistry& methods_;
+  JsonLog log_;
+  std::vector<int> frames_;  // that are still to come
 };
-
-int run(const RenderOptions& options, const MethodRegistry& methods) {
-  const OutputNames names = output_names(options);
-  Job job = load_job(options.job, options.overrides, methods, options.max_memory.bytes());
-  choose_frames(options.frames, &job.frames);
-  const Plan plan = make_plan(job);
-  Device device(options.device);
-  const int first = job.frames.first, last = job.frames.last;
-  std::vector<std::string> at_once = outputs_of(names, job, first, first);
-  at_once.push_back(options.json);
-  const Outputs outputs(at_once, input_files(job), outputs_of(names, job, first + 1, last));
-
-  if (!options.quiet) say("{}", describe(plan));
-  BuiltJob built(job, plan, device);
-  FrameLoop loop(options, job, names, device.info());
-  loop.say_findings(built);
-  for (int frame = job.frames.first; frame <= job.frames.last; ++frame) loop.render(built, frame);
-  if (!options.json.empty()) write_file_atomically(options.json, loop.json());
-  return static_cast<int>(loop.exit_code());
-}
 
 }  // namespace
 
@@ -155,12 +153,23 @@ void add_render(CommandLine& app, Command* chosen, const MethodRegistry& methods
                       "frames are numbered, FILE.0007.exr");
   command->add_option("--set", options->overrides, "Override a setting: key.path=value, as often as needed");
   command->add_option("--frames", options->frames,
-                      "Frames A-B, or A, of those that the job has; default all");
-  command->add_option("--device", options->device, "Number of the OpenCL device, see `mica devices`");
+                      "Frames A-B, A-BxN (each N-th), A, or several with commas; default MICA_FRAMES, or all "
+                      "of the job");
+  command
+      ->add_option("--shard", options->shard,
+                   "Render part K of N of the picture, into FILE.part-K-of-N.exr; see `mica join`")
+      .type_name("K/N");
+  command->add_option("--rows", options->rows, "Render these rows alone, from 0 at the top").type_name("A-B");
+  command->add_flag("--skip-finished", options->skip_finished,
+                    "Leave out what is there, whole, and by its header what the job would make");
+  add_device_option(command, &options->device);
   command->add_option("--json", options->json, "Write what was done: plan, bytes, seconds, queries/s, audit");
+  command->add_option("--json-log", options->log, "Write what happens, one JSON object a line, at FILE's end")
+      .type_name("FILE");
   add_max_memory(command, &options->max_memory);
   command->add_flag("--quiet", options->quiet, "No progress and no summary");
-  command->callback([=, &methods] { *chosen = [=, &methods] { return run(*options, methods); }; });
+  command->callback(
+      [=, &methods] { *chosen = [=, &methods] { return RenderRun(*options, methods).run(); }; });
 }
 
 }  // namespace mica::host::app

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "host/app/commands.h"
+#include "host/app/device_option.h"
 #include "host/app/exit_code.h"
 #include "host/app/json_file.h"
 #include "host/app/output.h"
@@ -136,8 +137,10 @@ nlohmann::json to_json(const std::vector<Check>& checks) {
   return list;
 }
 
-int run(int device_index, double evaluations, const std::string& json_path, const MethodRegistry& methods) {
+int run(const DeviceOption& option, double evaluations, const std::string& json_path,
+        const MethodRegistry& methods) {
   const Outputs outputs({json_path});
+  const int device_index = option.index();
   Device device(device_index);
   fmt::print("device {}: {}, {}\n\n", device_index, device.info().name, device.info().version);
   fmt::print("{:<48} {:>8} {:>14}\n", "check", "points", "error/allowed");
@@ -178,7 +181,7 @@ int run(int device_index, double evaluations, const std::string& json_path, cons
 }  // namespace
 
 void add_selftest(CommandLine& app, Command* chosen, const MethodRegistry& methods) {
-  auto device_index = std::make_shared<int>(0);
+  auto device = std::make_shared<DeviceOption>();
   auto json_path = std::make_shared<std::string>();
   auto evaluations = std::make_shared<double>(0);
   CommandLine* command =
@@ -191,18 +194,15 @@ void add_selftest(CommandLine& app, Command* chosen, const MethodRegistry& metho
       "the peak; grid, of its definition: 1e-4 plus 1e-6 of the smooth distribution, and 5e-4 for the "
       "density\n"
       "of its draws.");
-  command->add_option("--device", *device_index, "OpenCL device, by its number in `mica devices`")
-      .type_name("N")
-      .show_default();
+  add_device_option(command, device.get());
   command->add_option("--json", *json_path, "Writes the checks as JSON").type_name("FILE");
   command
       ->add_option("--evaluations", *evaluations,
                    "Asks the hard cases on, until so many answers were looked at: 1e8 takes an hour or so")
       .type_name("N")
       .check(between(0.0, 1e12));
-  command->callback([=, &methods] {
-    *chosen = [=, &methods] { return run(*device_index, *evaluations, *json_path, methods); };
-  });
+  command->callback(
+      [=, &methods] { *chosen = [=, &methods] { return run(*device, *evaluations, *json_path, methods); }; });
 }
 
 }  // namespace mica::host::app

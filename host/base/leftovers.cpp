@@ -29,12 +29,16 @@ Leftovers& leftovers() {
   return *all;
 }
 
+}  // namespace
+
 std::string host_name() {
   std::array<char, 256> name{};
   if (gethostname(name.data(), name.size() - 1) != 0) return "host";
-  std::string text(name.data());
+  const std::string text(name.data());
   return text.substr(0, 64);
 }
+
+namespace {
 
 std::string prefix() {
   return ".mica-" + host_name() + "-";

@@ -23,6 +23,9 @@ class Leftover {
 /// For a process that ends without unwinding.
 void remove_leftovers() noexcept;
 
+/// The machine's name, 64 letters at most; "host" where it has none.
+std::string host_name();
+
 /// The name for a temporary file in the folder of `target`: of this host and process, and `number`.
 std::string temporary_name(const std::string& target, int number);
 

@@ -17,10 +17,15 @@ struct Image {
   std::vector<std::string> channels;            ///< "R", "G", "B", "ndf.Y", ...
   std::vector<float> pixels;                    ///< interleaved: (row * width + column) * channels + channel
   std::map<std::string, std::string> metadata;  ///< names as written, e.g. "mica:device"
+  int first_row = 0;                            ///< of the whole picture, where this is a part of it
+  int whole_height = 0;                         ///< its height; 0: this is all of it
 };
 
-/// Writes float32 EXR, whole or not at all (temporary file, fsync, rename). The same image gives the same
-/// bytes. Throws FileError.
+/// The attribute that holds a hash of a file's pixels; see read_stored_picture.
+constexpr char kPixelHash[] = "mica:pixels";
+
+/// Writes float32 EXR, whole or not at all (temporary file, fsync, rename); a part of a picture is the data
+/// window of the whole. The same image gives the same bytes. Throws FileError.
 void write_exr(const std::string& path, const Image& image);
 
 /// How radiance becomes the brightness of a preview, channel by channel. [Reinhard02]: Erik Reinhard et al.,
@@ -44,8 +49,8 @@ struct Words<ToneMap> {
 /// The brightness of a radiance >= 0. @return [0, 1].
 double tone_mapped(ToneMap tone_map, double radiance);
 
-/// Writes R, G, B (or the only channel as grey) as an 8-bit sRGB PNG after 2^exposure scaling. NaN is shown
-/// black. Throws FileError.
+/// Writes R, G, B (or the only channel as grey) as an 8-bit sRGB PNG after 2^exposure scaling, with the
+/// image's metadata as text. NaN is shown black. Throws FileError.
 void write_png(const std::string& path, const Image& image, double exposure,
                ToneMap tone_map = ToneMap::shoulder);
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "host/base/hash.h"
 #include "host/image/image.h"
 #include "mica/error.h"
 
@@ -70,13 +71,17 @@ void write_exr(const std::string& path, const Image& image) {
   spec.attribute("oiio:ColorSpace", "Linear");
   // OpenImageIO would write the time of day; the file shall depend on the image alone.
   spec.attribute("DateTime", "1970:01:01 00:00:00");
+  spec.y = image.first_row;
+  if (image.whole_height > 0) spec.full_height = image.whole_height, spec.full_y = 0;
   for (const auto& [name, value] : image.metadata) spec.attribute(name, value);
+  spec.attribute(kPixelHash, hash_of_bytes(image.pixels.data(), image.pixels.size() * sizeof(float)));
   write_file_atomically(path, encode(path, "openexr", spec, image.pixels.data()));
 }
 
 namespace {
 
-std::string png_bytes(const std::string& path, const Image& image, double exposure, ToneMap tone_map) {
+std::string png_bytes(const std::string& path, const Image& image, double exposure, ToneMap tone_map,
+                      bool with_metadata) {
   check(path, image);
   const std::vector<std::size_t> channels = display_channels(path, image);
   const std::size_t pixel_count = image.pixels.size() / image.channels.size();
@@ -90,17 +95,21 @@ std::string png_bytes(const std::string& path, const Image& image, double exposu
 
   OIIO::ImageSpec spec(image.width, image.height, static_cast<int>(channels.size()), OIIO::TypeUInt8);
   spec.attribute("oiio:ColorSpace", "sRGB");
+  if (with_metadata) {
+    for (const auto& [name, value] : image.metadata) spec.attribute(name, value);
+    spec.attribute(kPixelHash, hash_of_bytes(values.data(), values.size()));
+  }
   return encode(path, "png", spec, values.data());
 }
 
 }  // namespace
 
 void write_png(const std::string& path, const Image& image, double exposure, ToneMap tone_map) {
-  write_file_atomically(path, png_bytes(path, image, exposure, tone_map));
+  write_file_atomically(path, png_bytes(path, image, exposure, tone_map, true));
 }
 
 std::string encode_png(const Image& image, double exposure) {
-  return png_bytes("a picture.png", image, exposure, ToneMap::shoulder);
+  return png_bytes("a picture.png", image, exposure, ToneMap::shoulder, false);
 }
 
 std::string encode_png(int width, int height, const std::vector<std::uint8_t>& srgb) {

@@ -1,5 +1,7 @@
 #include "host/job/input_files.h"
 
+#include "host/base/hash.h"
+
 namespace mica::host {
 
 std::vector<std::string> input_files(const SurfaceDescription& surface) {
@@ -24,6 +26,15 @@ std::vector<std::string> input_files(const Job& job) {
     files.insert(files.end(), {t.density, t.alpha, t.microroughness, t.stretch, t.color});
   }
   return files;
+}
+
+std::string hash_of_inputs(const Job& job) {
+  std::string hashes;
+  for (const std::string& path : input_files(job)) {
+    if (path.empty() || path == job.path) continue;
+    hashes += hash_of_file(path);
+  }
+  return hashes.empty() ? hashes : hash_of_bytes(hashes.data(), hashes.size());
 }
 
 }  // namespace mica::host

@@ -38,10 +38,8 @@ std::vector<AuditSample> AuditSampler::samples() const {
   return sorted;
 }
 
-AuditResult audit(const std::vector<AuditSample>& samples, const std::vector<const Surface*>& surfaces) {
-  AuditResult result;
-  result.samples = samples.size();
-  if (samples.empty()) return result;
+std::vector<AuditedSample> audit(const std::vector<AuditSample>& samples,
+                                 const std::vector<const Surface*>& surfaces) {
   std::vector<double> reference(samples.size());
   for (std::size_t n = 0; n < samples.size(); ++n)
     if (!surfaces[static_cast<std::size_t>(samples[n].evaluator)])
@@ -60,14 +58,24 @@ AuditResult audit(const std::vector<AuditSample>& samples, const std::vector<con
         reference::Oracle(*surfaces[surface], kOracleTolerance).evaluate(queries);
     for (std::size_t n = 0; n < places.size(); ++n) reference[places[n]] = answers[n].density;
   }
+  std::vector<AuditedSample> audited;
+  for (std::size_t n = 0; n < samples.size(); ++n)
+    audited.push_back({samples[n].key, samples[n].density, reference[n]});
+  return audited;
+}
 
-  const double peak = *std::max_element(reference.begin(), reference.end());
+AuditResult audit_result(const std::vector<AuditedSample>& samples) {
+  AuditResult result;
+  result.samples = samples.size();
+  if (samples.empty()) return result;
+  double peak = 0;
+  for (const AuditedSample& sample : samples) peak = std::max(peak, sample.reference);
   RelativeL2 l2;
   std::vector<double> errors;
-  for (std::size_t n = 0; n < samples.size(); ++n) {
-    const double difference = std::abs(samples[n].density - reference[n]);
-    l2.add(samples[n].density, reference[n]);
-    errors.push_back(difference == 0 ? 0 : difference / (reference[n] + 0.01 * peak));
+  for (const AuditedSample& sample : samples) {
+    const double difference = std::abs(sample.density - sample.reference);
+    l2.add(sample.density, sample.reference);
+    errors.push_back(difference == 0 ? 0 : difference / (sample.reference + 0.01 * peak));
   }
   std::sort(errors.begin(), errors.end());
   result.relative_l2 = l2.has_reference() ? l2.value() : 0;

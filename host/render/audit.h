@@ -48,8 +48,19 @@ struct AuditResult {
   double maximum = 0;
 };
 
+/// A sample with the density that it should have had.
+struct AuditedSample {
+  std::uint64_t key = 0;  ///< as AuditSample
+  float density = 0;
+  double reference = 0;
+};
+
 /// Re-evaluates the samples in double precision; `surfaces` by AuditSample::evaluator, null for `grid`, whose
 /// reference is its definition.
-AuditResult audit(const std::vector<AuditSample>& samples, const std::vector<const Surface*>& surfaces);
+std::vector<AuditedSample> audit(const std::vector<AuditSample>& samples,
+                                 const std::vector<const Surface*>& surfaces);
+
+/// Sums up samples, in the order of their keys.
+AuditResult audit_result(const std::vector<AuditedSample>& samples);
 
 }  // namespace mica::host

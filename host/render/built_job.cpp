@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "host/base/stopwatch.h"
+#include "host/job/input_files.h"
 #include "host/methods/ndf_brdf.h"
 #include "host/scene/keyframes.h"
 #include "host/surface/in_time.h"
@@ -40,13 +41,21 @@ Eigen::Matrix2d normal_change(const Surface& surface) {
   return size.asDiagonal() * (sum / (size.x() * size.y())) * size.asDiagonal();
 }
 
+/// Whether a method of the plan looks at the job's queries to choose among others.
+bool chooses(const Job& job, const Plan& plan) {
+  return std::any_of(plan.evaluators.begin(), plan.evaluators.end(), [&](const PlannedEvaluator& planned) {
+    return method_of(job, planned).traits().chooses;
+  });
+}
+
 }  // namespace
 
-BuiltJob::BuiltJob(const Job& job, const Plan& plan, Device& device)
+BuiltJob::BuiltJob(const Job& job, const Plan& plan, Device& device, std::optional<int> frame)
     : job_(job),
       plan_(plan),
       device_(device),
-      frame_(job.frames.first),
+      frame_(chooses(job, plan) ? job.frames.first : frame.value_or(job.frames.first)),
+      inputs_(hash_of_inputs(job)),
       surfaces_(make_surfaces()),
       scene_(make_scene()) {
   const Stopwatch watch;
@@ -143,7 +152,7 @@ std::vector<std::optional<Surface>> BuiltJob::make_surfaces() {
   const Stopwatch watch;
   std::vector<std::optional<Surface>> surfaces(plan_.evaluators.size());
   for (std::size_t n = 0; n < surfaces.size(); ++n)
-    if (plan_.evaluators[n].surface_index >= 0) surfaces[n] = make_surface_of(n, job_.frames.first);
+    if (plan_.evaluators[n].surface_index >= 0) surfaces[n] = make_surface_of(n, frame_);
   surface_seconds_ = watch.seconds();
   return surfaces;
 }
@@ -195,8 +204,8 @@ PixelSettings BuiltJob::pixels() const {
 Scene BuiltJob::make_scene() {
   const Stopwatch watch;
   SceneDescription description = job_.scene;
-  description.camera = camera_at(job_.scene, job_.frames.first);
-  description.lights = lights_at(job_.scene, job_.frames.first);
+  description.camera = camera_at(job_.scene, frame_);
+  description.lights = lights_at(job_.scene, frame_);
   Scene scene(description, job_.image.width, job_.image.height, pixels(), masking_alphas(), gathering());
   scene_seconds_ = watch.seconds();
   return scene;

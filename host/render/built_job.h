@@ -18,8 +18,9 @@ namespace mica::host {
 /// Everything that a plan names, built: surfaces, scene, and evaluators on the device; at one frame.
 class BuiltJob {
  public:
-  /// At the job's first frame. All three must outlive it. Throws mica::Error.
-  BuiltJob(const Job& job, const Plan& plan, Device& device);
+  /// At `frame`, or at the job's first one where a method chooses among others: what it chooses does not
+  /// depend on the frames that are wanted. The first three must outlive it. Throws mica::Error.
+  BuiltJob(const Job& job, const Plan& plan, Device& device, std::optional<int> frame = {});
 
   /// Goes on to another frame: camera and lights move, surfaces that change are made again, and nothing else.
   void go_to(int frame);
@@ -41,6 +42,7 @@ class BuiltJob {
   std::size_t device_bytes() const;  ///< of all structures, as allocated
   double device_seconds() const;     ///< that kernels ran so far, by the device's clock
 
+  const std::string& inputs() const { return inputs_; }                   ///< hash_of_inputs of the job
   const std::vector<std::string>& notes() const { return notes_; }        ///< of surfaces and images
   const std::vector<std::string>& warnings() const { return warnings_; }  ///< of surfaces and images
 
@@ -63,6 +65,7 @@ class BuiltJob {
   Device& device_;
   int frame_;
   double surface_seconds_ = 0, scene_seconds_ = 0, build_seconds_ = 0;
+  std::string inputs_;
   double past_device_seconds_ = 0;  // of evaluators that are no more
   std::vector<std::string> notes_, warnings_;
   std::vector<std::optional<Surface>> surfaces_;  // by PlannedEvaluator

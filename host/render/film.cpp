@@ -6,9 +6,10 @@
 
 namespace mica::host {
 
-Film::Film(int width, int height, const std::vector<std::string>& channels) {
+Film::Film(int width, int height, const std::vector<std::string>& channels, int first_row) {
   image_.width = width;
   image_.height = height;
+  image_.first_row = first_row;
   image_.channels = channels;
   image_.pixels.assign(static_cast<std::size_t>(width) * height * channels.size(), 0.0f);
 }
@@ -25,7 +26,7 @@ void Film::write(std::size_t first_pixel, const std::string& first_channel, std:
 
 void Film::add(const TracedRows& rows, const std::vector<float>& densities,
                const std::vector<float>& errors) {
-  const std::size_t first_pixel = static_cast<std::size_t>(rows.first_row) * image_.width;
+  const std::size_t first_pixel = static_cast<std::size_t>(rows.first_row - image_.first_row) * image_.width;
   const std::size_t pixels = static_cast<std::size_t>(rows.row_count) * image_.width;
 
   std::vector<Eigen::Vector3d> radiance(pixels), sample_radiance(rows.sample_radiance.size());

@@ -12,7 +12,8 @@ namespace mica::host {
 /// Collects traced rows and their densities into the channels of a plan.
 class Film {
  public:
-  Film(int width, int height, const std::vector<std::string>& channels);
+  /// @param first_row of the whole picture, from which on `height` rows are collected.
+  Film(int width, int height, const std::vector<std::string>& channels, int first_row = 0);
 
   /// Adds a block of rows; `densities` in the order of its queries. Sums run in that order, in double
   /// precision.

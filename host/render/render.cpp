@@ -40,26 +40,27 @@ std::vector<float> estimate_errors(const BuiltJob& built, const TracedRows& rows
   return errors;
 }
 
-/// Traces and evaluates all rows; the device evaluates one block while the host traces the next.
-void render_rows(const BuiltJob& built, const RenderProgress& progress, AuditSampler* sampler,
-                 RenderResult* result) {
+/// Traces and evaluates rows; the device evaluates one block while the host traces the next.
+void render_rows(const BuiltJob& built, const RowRange& rows, const RenderProgress& progress,
+                 AuditSampler* sampler, RenderResult* result) {
   const Stopwatch total;
   const ImageSettings& image = built.job().image;
   const int rows_a_block = built.plan().rows_a_block;
   const std::vector<std::string>& channels = built.plan().channels;
   const bool wants_errors = std::find(channels.begin(), channels.end(), "error.Y") != channels.end();
-  Film film(image.width, image.height, built.plan().channels);
+  Film film(image.width, rows.count, built.plan().channels, rows.first);
+  const int end = rows.first + rows.count;
   std::optional<PendingBlock> in_flight;
-  for (int row = 0; row < image.height || in_flight; row += rows_a_block) {
+  for (int row = rows.first; row < end || in_flight; row += rows_a_block) {
     std::optional<PendingBlock> next;
-    if (row < image.height) {
+    if (row < end) {
       const Stopwatch tracing;
-      TracedRows rows = built.scene().trace(row, std::min(rows_a_block, image.height - row));
+      TracedRows traced = built.scene().trace(row, std::min(rows_a_block, end - row));
       result->seconds.trace += tracing.seconds();
       const Stopwatch gathering;
-      result->queries += add_lit_brdfs(built, &rows) + gather_light(built, &rows);
+      result->queries += add_lit_brdfs(built, &traced) + gather_light(built, &traced);
       result->seconds.gather += gathering.seconds();
-      next.emplace(std::move(rows), built);
+      next.emplace(std::move(traced), built);
     }
     if (in_flight) {
       const Stopwatch waiting;
@@ -69,34 +70,34 @@ void render_rows(const BuiltJob& built, const RenderProgress& progress, AuditSam
                wants_errors ? estimate_errors(built, in_flight->rows(), densities) : std::vector<float>());
       offer(in_flight->rows(), densities, built.plan(), image.width, sampler);
       result->queries += densities.size();
-      progress(in_flight->rows().first_row + in_flight->rows().row_count, image.height);
+      progress(in_flight->rows().first_row + in_flight->rows().row_count - rows.first, rows.count);
     }
     in_flight = std::move(next);
   }
   result->image = film.take();
+  result->image.whole_height = image.height;
   result->seconds.render = total.seconds();
-}
-
-std::map<std::string, std::string> describe_image(const Job& job, int frame, const DeviceInfo& device,
-                                                  const AuditResult& audit) {
-  std::map<std::string, std::string> metadata;
-  metadata["mica:version"] = version();
-  metadata["mica:job"] = fmt::format("{:016x}", job.hash);
-  metadata["mica:seed"] = fmt::format("{}", job.seed);
-  if (job.frames.given) metadata["mica:frame"] = fmt::format("{}", frame);
-  metadata["mica:device"] = device.name;
-  if (audit.samples) {
-    metadata["mica:audit"] =
-        fmt::format("{} queries, relative L2 {:.3g}, 99th percentile {:.3g}, maximum {:.3g}", audit.samples,
-                    audit.relative_l2, audit.percentile_99, audit.maximum);
-  }
-  return metadata;
 }
 
 }  // namespace
 
+std::map<std::string, std::string> picture_identity(const Job& job, int frame, const std::string& inputs) {
+  std::map<std::string, std::string> identity;
+  identity["mica:version"] = version();
+  identity["mica:job"] = fmt::format("{:016x}", job.hash);
+  identity["mica:seed"] = fmt::format("{}", job.seed);
+  if (job.frames.given) identity["mica:frame"] = fmt::format("{}", frame);
+  if (!inputs.empty()) identity["mica:inputs"] = inputs;
+  return identity;
+}
+
+std::string describe(const AuditResult& audit) {
+  return fmt::format("{} queries, relative L2 {:.3g}, 99th percentile {:.3g}, maximum {:.3g}", audit.samples,
+                     audit.relative_l2, audit.percentile_99, audit.maximum);
+}
+
 RenderResult render_frame(BuiltJob& built, int frame, const DeviceInfo& device,
-                          const RenderProgress& progress) {
+                          const RenderProgress& progress, std::optional<RowRange> rows) {
   const Stopwatch total;
   const Job& job = built.job();
   RenderResult result;
@@ -110,10 +111,11 @@ RenderResult render_frame(BuiltJob& built, int frame, const DeviceInfo& device,
   }
   const double device_seconds = built.device_seconds();
   AuditSampler sampler(job.seed, job.audit.samples);
-  render_rows(built, progress, &sampler, &result);
+  render_rows(built, rows.value_or(RowRange{0, job.image.height}), progress, &sampler, &result);
 
   const Stopwatch auditing;
-  result.audit = audit(sampler.samples(), built.surfaces());
+  result.audited = audit(sampler.samples(), built.surfaces());
+  result.audit = audit_result(result.audited);
   result.seconds.audit = auditing.seconds();
   result.seconds.surfaces = built.surface_seconds();
   result.seconds.scene = built.scene_seconds();
@@ -122,7 +124,9 @@ RenderResult render_frame(BuiltJob& built, int frame, const DeviceInfo& device,
   result.device_seconds = built.device_seconds() - device_seconds;
   result.surface_notes = built.notes();
   result.surface_warnings = built.warnings();
-  result.image.metadata = describe_image(job, frame, device, result.audit);
+  result.image.metadata = picture_identity(job, frame, built.inputs());
+  result.image.metadata["mica:device"] = device.name;
+  if (result.audit.samples) result.image.metadata["mica:audit"] = describe(result.audit);
   result.seconds.total = before + total.seconds();
   return result;
 }

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <functional>
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,9 +32,22 @@ struct RenderResult {
   std::size_t queries = 0;
   std::size_t device_bytes = 0;  ///< of all structures, as allocated
   double device_seconds = 0;     ///< that kernels ran, by the device's clock
+  std::vector<AuditedSample> audited;
   AuditResult audit;
   std::vector<std::string> surface_notes, surface_warnings;
 };
+
+/// Rows of a picture, counted from the top.
+struct RowRange {
+  int first = 0, count = 0;
+};
+
+/// What a picture's file says of what it shows, by attribute: two files with the same are the same picture.
+/// @param inputs as hash_of_inputs.
+std::map<std::string, std::string> picture_identity(const Job& job, int frame, const std::string& inputs);
+
+/// How an audit is written into a picture.
+std::string describe(const AuditResult& audit);
 
 /// Called after every block of rows with the rows done; may throw to stop.
 using RenderProgress = std::function<void(int rows_done, int rows)>;
@@ -41,8 +56,9 @@ using RenderProgress = std::function<void(int rows_done, int rows)>;
 /// block before. The image depends on the job and the frame alone, bit for bit. Throws mica::Error.
 /// @param built at the job's first frame or at one that was rendered before. The first frame's seconds are
 /// those of everything that it needs; later ones need what changed.
+/// @param rows the only ones that are rendered; none: all.
 RenderResult render_frame(BuiltJob& built, int frame, const DeviceInfo& device,
-                          const RenderProgress& progress);
+                          const RenderProgress& progress, std::optional<RowRange> rows = {});
 
 /// Renders the first frame of a job.
 RenderResult render(const Job& job, const Plan& plan, Device& device, const RenderProgress& progress);

@@ -95,6 +95,10 @@ std::string failure_json(int frame, const std::string& error) {
   return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
+std::string skipped_json(int frame) {
+  return ordered_json{{"frame", frame}, {"skipped", true}}.dump(2) + "\n";
+}
+
 std::string frames_json(const std::vector<std::string>& frames) {
   ordered_json all = ordered_json::array();
   for (const std::string& frame : frames) all.push_back(ordered_json::parse(frame));

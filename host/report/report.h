@@ -20,6 +20,9 @@ std::string render_json(const Job& job, const DeviceInfo& device, const RenderRe
 /// What stands for a frame that failed, in the place of what was done.
 std::string failure_json(int frame, const std::string& error);
 
+/// What stands for a frame that was there.
+std::string skipped_json(int frame);
+
 /// The texts of all frames, in order, as one.
 std::string frames_json(const std::vector<std::string>& frames);
 

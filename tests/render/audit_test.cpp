@@ -54,11 +54,11 @@ TEST(Audit, MeasuresAnErrorThatWasPutIn) {
     const Query query = query_at(0.01 * n);
     samples.push_back({0, query, static_cast<float>(oracle.evaluate(query).density), 0});
   }
-  const AuditResult exact = audit(samples, {&surface});
+  const AuditResult exact = audit_result(audit(samples, {&surface}));
   EXPECT_LT(exact.relative_l2, 1e-6);
   EXPECT_LT(exact.maximum, 1e-6);
   for (AuditSample& sample : samples) sample.density *= 1.01f;
-  const AuditResult wrong = audit(samples, {&surface});
+  const AuditResult wrong = audit_result(audit(samples, {&surface}));
   EXPECT_EQ(wrong.samples, 100u);
   EXPECT_NEAR(wrong.relative_l2, 0.01, 1e-6);
   EXPECT_NEAR(wrong.maximum, 0.01 / 1.01, 2e-4);
