@@ -15,6 +15,8 @@ using Command = std::function<int()>;
 /// command.
 void add_render(CommandLine& app, Command* chosen, const MethodRegistry& methods);
 void add_join(CommandLine& app, Command* chosen, const MethodRegistry& methods);
+void add_warm(CommandLine& app, Command* chosen, const MethodRegistry& methods);
+void add_status(CommandLine& app, Command* chosen, const MethodRegistry& methods);
 void add_check(CommandLine& app, Command* chosen, const MethodRegistry& methods);
 void add_ndf(CommandLine& app, Command* chosen, const MethodRegistry& methods);
 void add_eval(CommandLine& app, Command* chosen, const MethodRegistry& methods);

@@ -8,6 +8,7 @@
 
 #include "host/app/commands.h"
 #include "host/app/device_option.h"
+#include "host/app/eval_output.h"
 #include "host/app/eval_patch.h"
 #include "host/app/evaluation.h"
 #include "host/app/json_file.h"
@@ -26,7 +27,8 @@ using Clock = std::chrono::steady_clock;
 struct EvalOptions {
   MapOptions map;
   MethodOptions method;
-  std::string quantity = "ndf", queries, output, json, part = "all";
+  EvalOutput output;
+  std::string quantity = "ndf", queries, json, part = "all";
   std::optional<double> roughness;
   DeviceOption device;
 };
@@ -57,7 +59,7 @@ nlohmann::json summary(const EvalOptions& options, const EvalSubject& subject, c
       {"load", times.load}, {"build", times.build}, {"evaluate", times.evaluate}, {"device", times.device}};
   json["queries"] = count;
   json["queries_per_second"] = times.evaluate > 0 ? static_cast<double>(count) / times.evaluate : 0.0;
-  json["output"] = options.output;
+  json["output"] = options.output.file();
   return json;
 }
 
@@ -68,9 +70,18 @@ QueryTable read_queries(const EvalOptions& options, const MethodSettings& settin
   return QueryTable(options.queries, given ? settings.own_roughness() : std::nullopt, "--microroughness");
 }
 
+ValueFile open_output(const EvalOptions& options, const QueryTable& table) {
+  const std::string roughness = options.roughness ? fmt::format("--roughness {}", *options.roughness) : "";
+  return options.output.open(
+      table.size(), 0,
+      options.output.shard.empty()
+          ? std::map<std::string, std::string>()
+          : answers_identity(table.source(), options.map, options.method, "--quantity ndf " + roughness));
+}
+
 int run_patches(const EvalOptions& options) {
   if (options.method.tolerance) throw UsageError("--tolerance is for --quantity ndf");
-  return evaluate_patches({options.map, options.method, options.quantity, options.queries, options.output,
+  return evaluate_patches({options.map, options.method, options.output, options.quantity, options.queries,
                            options.json, options.part, options.roughness, options.device});
 }
 
@@ -81,30 +92,31 @@ int run(const EvalOptions& options) {
     throw UsageError(fmt::format("--ndf {} answers --quantity brdf, energy and sample; it has no P-NDF",
                                  options.method.name));
   const std::unique_ptr<MethodSettings> settings = settings_of(options.method);
-  check_extension(options.output, {".npy"});
-  const Outputs outputs({options.output, options.json}, {options.map.path, options.queries});
+  const Outputs outputs({options.output.file(), options.json}, {options.map.path, options.queries});
 
   PhaseTimes times;
   Clock::time_point start = Clock::now();
   const QueryTable table = read_queries(options, *settings);
   const EvalSubject subject = load_subject(options.map, options.method, *settings);
-  table.check([&](const Query& query) { return method.query_problem(query, subject.map()); });
+  const TableRange rows = options.output.rows(table.size());
+  table.check(rows, [&](const Query& query) { return method.query_problem(query, subject.map()); });
   times.load = lap(&start);
   const OpenEvaluator open = open_evaluator(method, *settings, options.device, subject.map());
   open.evaluator->calibrate(
       table.size(), [&](std::size_t row) { return table.query(row); }, 1);
   log_choices(open);
   times.build = lap(&start);
-  const std::vector<float> densities =
-      evaluate_all(open.evaluator.get(), table.size(), [&](std::size_t row) { return table.query(row); });
+  ValueFile output = open_output(options, table);
+  evaluate_all(
+      open.evaluator.get(), rows.count(), [&](std::size_t row) { return table.query(rows.first + row); },
+      [&](const std::vector<float>& densities) { output.append(densities); });
   times.evaluate = lap(&start);
   times.device = open.evaluator->device_seconds();
 
-  write_file_atomically(options.output, to_npy(densities));
-  spdlog::info("{} queries by {} on {} in {:.3g} s", densities.size(), open.evaluator->name(),
+  output.finish();
+  spdlog::info("{} queries by {} on {} in {:.3g} s", rows.count(), open.evaluator->name(),
                open.device ? open.device->info().name : "the host", times.evaluate);
-  if (!options.json.empty())
-    write_json(options.json, summary(options, subject, open, densities.size(), times));
+  if (!options.json.empty()) write_json(options.json, summary(options, subject, open, rows.count(), times));
   return 0;
 }
 
@@ -169,7 +181,7 @@ void add_eval(CommandLine& app, Command* chosen, const MethodRegistry& methods) 
   command->add_option("--queries", options->queries, "Table of queries, .npy or .csv")
       .required()
       .type_name("FILE");
-  command->add_option("-o,--output", options->output, "Densities, .npy").required().type_name("FILE");
+  add_eval_output(command, &options->output);
   command
       ->add_option("--json", options->json,
                    "Writes what was done: map, device, bytes, seconds, queries a second")

@@ -41,11 +41,11 @@ std::uint64_t seed_of(const PatchEvaluation& options) {
   return seed;
 }
 
-/// The answers, row by row, and how many there are in one.
-struct Answers {
-  std::vector<float> values;
-  std::size_t columns = 0;  // 0: one number a row
-};
+/// How many numbers an answer is; 0: one a row.
+std::size_t columns_of(PatchQuantity quantity) {
+  if (quantity == PatchQuantity::energy) return 2;
+  return quantity == PatchQuantity::sample ? 5 : 0;
+}
 
 /// Queries of `count` rows from `first`, answered.
 template <typename Query, typename Result>
@@ -57,41 +57,43 @@ std::vector<Result> ask(PatchBrdf* brdf, std::vector<Result> (PatchBrdf::*answer
   return (brdf->*answer)(queries);
 }
 
-Answers answer_all(const PatchEvaluation& options, const PatchTable& table, PatchBrdf* brdf) {
-  Answers answers;
-  std::vector<float>& values = answers.values;
+/// The answers to `count` rows from `first`, row by row.
+std::vector<float> answer(const PatchEvaluation& options, const PatchTable& table, PatchBrdf* brdf,
+                          std::size_t first, std::size_t count) {
+  std::vector<float> values;
   const std::string& part = options.part;
-  const auto brdf_rows = [&](std::size_t first, std::size_t count) {
-    for (const BrdfValue& value : ask<BrdfQuery, BrdfValue>(brdf, &PatchBrdf::evaluate, first, count,
-                                                            [&](std::size_t row) { return table.brdf(row); }))
-      values.push_back(chosen_part(part, value.single, value.multiple));
-  };
-  const auto energy_rows = [&](std::size_t first, std::size_t count) {
-    for (const Albedo& albedo : ask<ViewQuery, Albedo>(brdf, &PatchBrdf::energy, first, count,
-                                                       [&](std::size_t row) { return table.view(row); }))
-      values.insert(values.end(), {albedo.single, albedo.lost});
-  };
-  const auto sample_rows = [&](std::size_t first, std::size_t count) {
-    for (const BrdfSample& sample :
-         ask<SampleQuery, BrdfSample>(brdf, &PatchBrdf::sample, first, count,
-                                      [&](std::size_t row) { return table.sample(row, seed_of(options)); }))
-      values.insert(values.end(), {sample.light.x(), sample.light.y(), sample.light.z(), sample.pdf,
-                                   chosen_part(part, sample.weight_single, sample.weight_multiple)});
-  };
   switch (to_quantity(options.quantity)) {
     case PatchQuantity::brdf:
-      work_with_progress(table.size(), brdf_rows);
+      for (const BrdfValue& value : ask<BrdfQuery, BrdfValue>(
+               brdf, &PatchBrdf::evaluate, first, count, [&](std::size_t row) { return table.brdf(row); }))
+        values.push_back(chosen_part(part, value.single, value.multiple));
       break;
     case PatchQuantity::energy:
-      answers.columns = 2;
-      work_with_progress(table.size(), energy_rows);
+      for (const Albedo& albedo : ask<ViewQuery, Albedo>(brdf, &PatchBrdf::energy, first, count,
+                                                         [&](std::size_t row) { return table.view(row); }))
+        values.insert(values.end(), {albedo.single, albedo.lost});
       break;
     case PatchQuantity::sample:
-      answers.columns = 5;
-      work_with_progress(table.size(), sample_rows);
+      const std::uint64_t seed = seed_of(options);
+      for (const BrdfSample& sample :
+           ask<SampleQuery, BrdfSample>(brdf, &PatchBrdf::sample, first, count,
+                                        [&](std::size_t row) { return table.sample(row, seed); }))
+        values.insert(values.end(), {sample.light.x(), sample.light.y(), sample.light.z(), sample.pdf,
+                                     chosen_part(part, sample.weight_single, sample.weight_multiple)});
       break;
   }
-  return answers;
+  return values;
+}
+
+ValueFile open_output(const PatchEvaluation& options, const PatchTable& table) {
+  std::map<std::string, std::string> identity;
+  if (!options.output.shard.empty()) {
+    const std::string roughness = options.roughness ? fmt::format("--roughness {}", *options.roughness) : "";
+    identity = answers_identity(
+        table.source(), options.map, options.method,
+        fmt::format("--quantity {} --part {} {}", options.quantity, options.part, roughness));
+  }
+  return options.output.open(table.size(), columns_of(to_quantity(options.quantity)), identity);
 }
 
 }  // namespace
@@ -138,8 +140,7 @@ int evaluate_patches(const PatchEvaluation& options) {
   if (method.traits().map && options.map.path.empty())
     throw UsageError(fmt::format("--ndf {} needs a --map", method.name()));
   const std::unique_ptr<MethodSettings> settings = settings_of(options.method);
-  check_extension(options.output, {".npy"});
-  const Outputs outputs({options.output, options.json}, {options.map.path, options.queries});
+  const Outputs outputs({options.output.file(), options.json}, {options.map.path, options.queries});
 
   const Stopwatch loading;
   std::optional<double> roughness = options.roughness;
@@ -147,18 +148,22 @@ int evaluate_patches(const PatchEvaluation& options) {
     roughness = options.method.given("microroughness") ? settings->own_roughness() : std::nullopt;
   const PatchTable table(options.queries, to_quantity(options.quantity), roughness);
   const EvalSubject subject = load_subject(options.map, options.method, *settings);
-  table.check([&](const ViewQuery& query) { return view_problem(method, query, subject.map()); });
+  const TableRange rows = options.output.rows(table.size());
+  table.check(rows, [&](const ViewQuery& query) { return view_problem(method, query, subject.map()); });
   const double load_seconds = loading.seconds();
   const Stopwatch building;
   Device device(options.device.index());
   const std::unique_ptr<PatchBrdf> brdf = method.make_brdf(&device, subject.map(), *settings);
   const double build_seconds = building.seconds();
   const Stopwatch evaluating;
-  const Answers answers = answer_all(options, table, brdf.get());
+  ValueFile output = open_output(options, table);
+  work_with_progress(rows.count(), [&](std::size_t first, std::size_t count) {
+    output.append(answer(options, table, brdf.get(), rows.first + first, count));
+  });
+  output.finish();
   const double seconds = evaluating.seconds();
 
-  write_file_atomically(options.output, to_npy(answers.values, answers.columns));
-  spdlog::info("{} rows of {} by {} on {} in {:.3g} s", table.size(), options.quantity, brdf->name(),
+  spdlog::info("{} rows of {} by {} on {} in {:.3g} s", rows.count(), options.quantity, brdf->name(),
                device.info().name, seconds);
   if (options.json.empty()) return 0;
   write_json(options.json,
@@ -178,9 +183,9 @@ int evaluate_patches(const PatchEvaluation& options) {
                 {"build", build_seconds},
                 {"evaluate", seconds},
                 {"device", brdf->device_seconds()}}},
-              {"queries", table.size()},
-              {"queries_per_second", seconds > 0 ? static_cast<double>(table.size()) / seconds : 0.0},
-              {"output", options.output}});
+              {"queries", rows.count()},
+              {"queries_per_second", seconds > 0 ? static_cast<double>(rows.count()) / seconds : 0.0},
+              {"output", options.output.file()}});
   return 0;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "host/app/device_option.h"
+#include "host/app/eval_output.h"
 #include "host/app/map_options.h"
 #include "host/app/method_options.h"
 #include "host/surface/surface.h"
@@ -26,7 +27,8 @@ EvalSubject load_subject(const MapOptions& map, const MethodOptions& method, con
 struct PatchEvaluation {
   MapOptions map;
   MethodOptions method;
-  std::string quantity, queries, output, json;  ///< quantity: one of patch_quantities()
+  EvalOutput output;
+  std::string quantity, queries, json;  ///< quantity: one of patch_quantities()
   std::string part = "all";
   std::optional<double> roughness;
   DeviceOption device;

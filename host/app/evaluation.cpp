@@ -54,18 +54,14 @@ void work_with_progress(std::size_t count, const std::function<void(std::size_t,
   });
 }
 
-std::vector<float> evaluate_all(Evaluator* evaluator, std::size_t count,
-                                const std::function<Query(std::size_t)>& query) {
-  std::vector<float> densities;
-  densities.reserve(count);
+void evaluate_all(Evaluator* evaluator, std::size_t count, const std::function<Query(std::size_t)>& query,
+                  const std::function<void(const std::vector<float>&)>& take) {
   std::vector<Query> queries;
   work_with_progress(count, [&](std::size_t first, std::size_t some) {
     queries.resize(some);
     for (std::size_t n = 0; n < some; ++n) queries[n] = query(first + n);
-    const std::vector<float> answers = evaluator->evaluate(queries);
-    densities.insert(densities.end(), answers.begin(), answers.end());
+    take(evaluator->evaluate(queries));
   });
-  return densities;
 }
 
 void check_extension(const std::string& path, const std::vector<std::string>& extensions) {

@@ -37,9 +37,9 @@ nlohmann::json describe_choices(const OpenEvaluator& open);
 /// it checks for interrupts; shows progress on stderr once it has taken a second.
 void work_with_progress(std::size_t count, const std::function<void(std::size_t, std::size_t)>& work);
 
-/// Densities of queries 0 .. count - 1, in chunks.
-std::vector<float> evaluate_all(Evaluator* evaluator, std::size_t count,
-                                const std::function<Query(std::size_t)>& query);
+/// Densities of queries 0 .. count - 1, in chunks, each of which `take` gets in their order.
+void evaluate_all(Evaluator* evaluator, std::size_t count, const std::function<Query(std::size_t)>& query,
+                  const std::function<void(const std::vector<float>&)>& take);
 
 /// Throws UsageError unless `path` ends in one of `extensions`.
 void check_extension(const std::string& path, const std::vector<std::string>& extensions);

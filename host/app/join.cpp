@@ -1,6 +1,8 @@
 // mica join: one picture from its parts.
 #include <fmt/format.h>
 
+#include <filesystem>
+
 #include "host/app/commands.h"
 #include "host/app/output.h"
 #include "host/app/picture_names.h"
@@ -8,6 +10,7 @@
 #include "host/base/interrupt.h"
 #include "host/image/stored_picture.h"
 #include "host/render/part.h"
+#include "host/tables/value_file.h"
 #include "mica/error.h"
 
 namespace mica::host::app {
@@ -35,7 +38,16 @@ std::vector<PicturePart> read_parts(const std::vector<std::string>& paths) {
   return parts;
 }
 
+int join_table(const JoinOptions& options) {
+  const Outputs outputs({options.output}, options.parts);
+  const std::uint64_t rows = join_tables(options.parts, options.output);
+  if (!options.quiet)
+    say("wrote     {}, {} rows, from {} parts\n", options.output, rows, options.parts.size());
+  return 0;
+}
+
 int run(const JoinOptions& options) {
+  if (std::filesystem::path(options.output).extension() == ".npy") return join_table(options);
   const PictureNames names = picture_names("", options.output);
   const Outputs outputs({names.exr, names.png}, options.parts);
   const JoinedPicture joined = join(read_parts(options.parts));
@@ -55,9 +67,11 @@ int run(const JoinOptions& options) {
 void add_join(CommandLine& app, Command* chosen, const MethodRegistry&) {
   auto options = std::make_shared<JoinOptions>();
   CommandLine* command = app.add_subcommand(
-      "join", "Make one picture of its parts, as `mica render --shard` and `--rows` write them");
+      "join", "Make one picture or table of its parts, as `mica render` and `mica eval --shard` write them");
   command->add_option("parts", options->parts, "All parts, in any order").required().type_name("PART");
-  command->add_option("-o,--output", options->output, "FILE.exr (with FILE.png beside it) or FILE.png")
+  command
+      ->add_option("-o,--output", options->output,
+                   "FILE.exr (with FILE.png beside it) or FILE.png; of a table FILE.npy")
       .required()
       .type_name("FILE");
   command->add_flag("--quiet", options->quiet, "No summary");

@@ -117,7 +117,7 @@ int run_centers(const NdfOptions& options) {
     query.roughness = centers.columns > 2 ? centers.at(row, 2) : options.roughness;
     return query;
   };
-  check_rows(options.centers, centers.rows, [&](std::size_t row) {
+  check_rows(options.centers, {0, centers.rows}, [&](std::size_t row) {
     return method_of(options.method).query_problem(footprint_of(row), &surface);
   });
   const OpenEvaluator open =

@@ -5,7 +5,7 @@
 #include <charconv>
 #include <filesystem>
 
-#include "host/app/frame_list.h"
+#include "host/app/frame_choice.h"
 #include "mica/error.h"
 
 namespace mica::host::app {

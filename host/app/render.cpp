@@ -4,7 +4,7 @@
 
 #include "host/app/commands.h"
 #include "host/app/device_option.h"
-#include "host/app/frame_list.h"
+#include "host/app/frame_choice.h"
 #include "host/app/frame_loop.h"
 #include "host/app/json_log.h"
 #include "host/app/max_memory.h"
@@ -12,6 +12,7 @@
 #include "host/app/picture_names.h"
 #include "host/app/say.h"
 #include "host/base/interrupt.h"
+#include "host/job/frame_list.h"
 #include "host/job/input_files.h"
 #include "host/job/job.h"
 #include "host/report/report.h"
@@ -116,6 +117,7 @@ class RenderRun {
       loop->render(built, frame, device.info());
       frames_.erase(frames_.begin());
     }
+    log_.write("kernels", {{"compiled", device.compiled()}, {"of", device.programs().size()}});
   }
 
   void tell_start(const Job& job, const Targets& targets) {

@@ -11,6 +11,7 @@
 #include "host/app/commands.h"
 #include "host/app/exit_code.h"
 #include "host/app/say.h"
+#include "host/app/thread_limit.h"
 #include "host/base/interrupt.h"
 #include "mica/error.h"
 #include "mica/method.h"
@@ -23,12 +24,13 @@ int code(ExitCode exit_code) {
 }
 
 int parse_and_run(int argc, const char* const* argv, const MethodRegistry& methods) {
+  const ThreadLimit threads;
   CommandLine app("Mica evaluates glint normal distribution functions on OpenCL and makes pictures of them.");
   app.version_flag("--version", about);
   app.require_subcommand();
   Command chosen;
-  for (const auto add : {add_render, add_join, add_check, add_ndf, add_eval, add_map, add_devices,
-                         add_selftest, add_bench, add_manual})
+  for (const auto add : {add_render, add_join, add_warm, add_status, add_check, add_ndf, add_eval, add_map,
+                         add_devices, add_selftest, add_bench, add_manual})
     add(app, &chosen, methods);
   if (const std::optional<int> code = app.parse(argc, argv)) return *code;
   const int done = chosen();

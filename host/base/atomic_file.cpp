@@ -39,50 +39,6 @@ fs::path folder_of(const std::string& path) {
   return folder.empty() ? fs::path(".") : folder;
 }
 
-/// A file next to its target that vanishes unless it is moved onto it.
-class TemporaryFile {
- public:
-  explicit TemporaryFile(const std::string& target) : target_(target) {
-    do {
-      name_ = temporary_name(target, attempt_++);
-      descriptor_ = open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    } while (descriptor_ < 0 && errno == EEXIST);
-    if (descriptor_ < 0) fail(target_, "create", errno);
-    leftover_.emplace(name_);
-  }
-  ~TemporaryFile() {
-    if (descriptor_ >= 0) close(descriptor_);
-  }
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
-
-  void set_mode(mode_t mode) const {
-    if (fchmod(descriptor_, mode & 07777) != 0) fail(target_, "write", errno);
-  }
-
-  void write(const std::string& bytes) {
-    for (std::size_t done = 0; done < bytes.size();) {
-      const ssize_t count = ::write(descriptor_, bytes.data() + done, bytes.size() - done);
-      if (count < 0 && errno != EINTR) fail(target_, "write", errno);
-      if (count > 0) done += static_cast<std::size_t>(count);
-    }
-    if (fsync(descriptor_) != 0) fail(target_, "write", errno);
-  }
-
-  void move_onto_target() {
-    const int closed = close(std::exchange(descriptor_, -1));
-    if (closed != 0) fail(target_, "write", errno);
-    if (std::rename(name_.c_str(), target_.c_str()) != 0) fail(target_, "write", errno);
-    leftover_->keep();
-  }
-
- private:
-  std::string target_, name_;
-  int attempt_ = 0;
-  int descriptor_ = -1;
-  std::optional<Leftover> leftover_;
-};
-
 /// Makes the rename itself durable. A folder that cannot be opened for this is no reason to fail: the file is
 /// there.
 void sync_folder(const std::string& path) {
@@ -102,18 +58,75 @@ std::string replacing_problem(const struct stat& status) {
 
 }  // namespace
 
-void write_file_atomically(const std::string& path, const std::string& bytes) {
+/// A file next to its target that vanishes unless it is moved onto it.
+class AtomicFile::Temporary {
+ public:
+  explicit Temporary(const std::string& target) : target_(target) {
+    do {
+      name_ = temporary_name(target, attempt_++);
+      descriptor_ = open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    } while (descriptor_ < 0 && errno == EEXIST);
+    if (descriptor_ < 0) fail(target_, "create", errno);
+    leftover_.emplace(name_);
+  }
+  ~Temporary() {
+    if (descriptor_ >= 0) close(descriptor_);
+  }
+  Temporary(const Temporary&) = delete;
+  Temporary& operator=(const Temporary&) = delete;
+
+  void set_mode(mode_t mode) const {
+    if (fchmod(descriptor_, mode & 07777) != 0) fail(target_, "write", errno);
+  }
+
+  void write(const char* bytes, std::size_t count) {
+    for (std::size_t done = 0; done < count;) {
+      const ssize_t written = ::write(descriptor_, bytes + done, count - done);
+      if (written < 0 && errno != EINTR) fail(target_, "write", errno);
+      if (written > 0) done += static_cast<std::size_t>(written);
+    }
+  }
+
+  void move_onto_target() {
+    if (fsync(descriptor_) != 0) fail(target_, "write", errno);
+    const int closed = close(std::exchange(descriptor_, -1));
+    if (closed != 0) fail(target_, "write", errno);
+    if (std::rename(name_.c_str(), target_.c_str()) != 0) fail(target_, "write", errno);
+    leftover_->keep();
+    sync_folder(target_);
+  }
+
+ private:
+  std::string target_, name_;
+  int attempt_ = 0;
+  int descriptor_ = -1;
+  std::optional<Leftover> leftover_;
+};
+
+AtomicFile::AtomicFile(const std::string& path) {
   struct stat status;
   const bool exists = stat(path.c_str(), &status) == 0;
   if (exists)
     if (const std::string problem = replacing_problem(status); !problem.empty())
       throw FileError(path + ": " + problem);
-  const std::string target = link_target(path);
-  TemporaryFile file(target);
-  if (exists) file.set_mode(status.st_mode);
-  file.write(bytes);
-  file.move_onto_target();
-  sync_folder(target);
+  file_ = std::make_unique<Temporary>(link_target(path));
+  if (exists) file_->set_mode(status.st_mode);
+}
+
+AtomicFile::~AtomicFile() = default;
+
+void AtomicFile::append(const void* bytes, std::size_t count) {
+  file_->write(static_cast<const char*>(bytes), count);
+}
+
+void AtomicFile::finish() {
+  file_->move_onto_target();
+}
+
+void write_file_atomically(const std::string& path, const std::string& bytes) {
+  AtomicFile file(path);
+  file.append(bytes);
+  file.finish();
 }
 
 std::string writing_problem(const std::string& path) {

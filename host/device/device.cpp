@@ -1,7 +1,6 @@
 #include "host/device/device.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include "host/device/binary_cache.h"
 #include "host/device/kernel_sources.h"
@@ -98,6 +97,18 @@ Device::Device(int index) : device_(choose(index)), info_(describe(device_)) {
   }
 }
 
+cl::Program Device::compile(const std::string& source, const std::string& flags,
+                            const std::string& what) const {
+  cl::Program program(context_, source);
+  try {
+    program.build({device_}, flags.c_str());
+  } catch (const cl::Error& error) {
+    throw DeviceError(fmt::format("{}\n{}", opencl_error(error, "building " + what).what(),
+                                  program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device_)));
+  }
+  return program;
+}
+
 cl::Program Device::program(const std::string& file, const std::string& options) {
   const std::lock_guard<std::mutex> lock(mutex_);
   const auto found = programs_.find(file + " " + options);
@@ -108,15 +119,12 @@ cl::Program Device::program(const std::string& file, const std::string& options)
   const BinaryCache cache(info_, source, flags);
   cl::Program program;
   if (!cache.load(context_, device_, &program)) {
-    program = cl::Program(context_, source);
-    try {
-      program.build({device_}, flags.c_str());
-    } catch (const cl::Error& error) {
-      throw DeviceError(fmt::format("{}\n{}", opencl_error(error, "building " + file + " " + options).what(),
-                                    program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device_)));
+    const BinaryCache::Turn turn = cache.wait_for_turn();
+    if (!cache.load(context_, device_, &program)) {
+      program = compile(source, flags, file + " " + options);
+      cache.store(program);
+      ++compiled_;
     }
-    cache.store(program);
-    spdlog::debug("built {} {}", file, options);
   }
   return programs_.emplace(file + " " + options, program).first->second;
 }
@@ -133,6 +141,11 @@ cl::Kernel Device::kernel(const std::string& file, const std::string& name, cons
   } catch (const cl::Error& error) {
     throw opencl_error(error, fmt::format("creating kernel {} of {}", name, file));
   }
+}
+
+int Device::compiled() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return compiled_;
 }
 
 std::vector<std::string> Device::programs() const {

@@ -69,6 +69,8 @@ class Device {
 
   /// What was compiled so far: files with their options.
   std::vector<std::string> programs() const;
+  /// How many of them came from no cache.
+  int compiled() const;
   /// Bytes of all buffers that there are.
   std::size_t bytes() const { return bytes_->now; }
   /// The most that all buffers together have taken at a time, since the last call of `forget_peak`.
@@ -84,6 +86,7 @@ class Device {
  private:
   cl::Buffer upload_bytes(const void* data, std::size_t bytes, const std::string& what) const;
   cl::Program program(const std::string& file, const std::string& options);
+  cl::Program compile(const std::string& source, const std::string& flags, const std::string& what) const;
 
   cl::Device device_;
   DeviceInfo info_;
@@ -92,6 +95,7 @@ class Device {
   std::shared_ptr<BufferBytes> bytes_ = std::make_shared<BufferBytes>();  // shared with the buffers
   mutable std::mutex mutex_;
   std::map<std::string, cl::Program> programs_;
+  int compiled_ = 0;
 };
 
 }  // namespace mica::host

@@ -57,6 +57,7 @@ ordered_json to_json(const DeviceInfo& device) {
 
 std::string plan_json(const Job& job, const Plan& plan, const std::optional<Estimate>& estimate) {
   ordered_json json = {{"mica", version()}, {"job", to_json(job)}, {"plan", to_json(plan)}};
+  if (job.frames.given) json["frames"] = {job.frames.first, job.frames.last};
   if (estimate)
     json["estimate"] = {{"queries", estimate->queries},
                         {"seconds", estimate->seconds},

@@ -140,14 +140,23 @@ class SizedFile {
     if (bytes > rest_) fail_damaged(path_, fmt::format("it ends within its {}", what));
     stream_.read(static_cast<char*>(target), static_cast<std::streamsize>(bytes));
     if (!stream_) throw FileError(path_ + ": cannot be read");
-    rest_ -= bytes;
+    rest_ -= bytes, data_ += static_cast<std::streamoff>(bytes);
   }
   std::uint64_t rest() const { return rest_; }
 
+  /// Bytes from `offset` after what was read so far.
+  void read_at(std::uint64_t offset, void* target, std::size_t bytes) const {
+    stream_.clear();
+    stream_.seekg(data_ + static_cast<std::streamoff>(offset));
+    stream_.read(static_cast<char*>(target), static_cast<std::streamsize>(bytes));
+    if (!stream_) throw FileError(path_ + ": cannot be read");
+  }
+
  private:
   std::string path_;
-  std::ifstream stream_;
-  std::uint64_t rest_ = 0;  // bytes not read yet
+  mutable std::ifstream stream_;  // whose place is no part of what the file is
+  std::streamoff data_ = 0;       // where what was read so far ends
+  std::uint64_t rest_ = 0;        // bytes not read yet
 };
 
 Header read_header(const std::string& path, SizedFile* file) {
@@ -165,25 +174,56 @@ Header read_header(const std::string& path, SizedFile* file) {
   return HeaderParser(path, text).parse();
 }
 
-/// Values in the file's order. @param swapped those are big endian.
+/// Values of a file whose header was read.
 template <typename T>
-void read_values(SizedFile* file, bool fortran_order, bool swapped, Table* table) {
-  std::vector<T> chunk(std::min<std::size_t>(table->values.size(), 1 << 16));
-  for (std::size_t first = 0; first < table->values.size(); first += chunk.size()) {
-    const std::size_t count = std::min(chunk.size(), table->values.size() - first);
-    file->read(chunk.data(), count * sizeof(T), "data");
-    for (std::size_t n = 0; n < count; ++n) {
-      auto* const bytes = reinterpret_cast<unsigned char*>(&chunk[n]);
-      if (swapped) std::reverse(bytes, bytes + sizeof(T));
-      const std::size_t k = first + n;
-      table->values[fortran_order ? k % table->rows * table->columns + k / table->rows : k] = chunk[n];
+class NpyRows : public RowSource {
+ public:
+  /// @param swapped values are big endian.
+  NpyRows(SizedFile file, const Header& header, bool swapped)
+      : file_(std::move(file)),
+        rows_(header.shape[0]),
+        columns_(header.shape[1]),
+        fortran_order_(header.fortran_order),
+        swapped_(swapped) {}
+
+  std::size_t rows() const override { return rows_; }
+  std::size_t columns() const override { return columns_; }
+  std::vector<double> read(std::size_t first, std::size_t count) const override {
+    std::vector<double> values(count * columns_);
+    if (!fortran_order_) {
+      read_run(first * columns_, values.size(), [&](std::size_t n) -> double& { return values[n]; });
+    } else {
+      for (std::size_t column = 0; column < columns_; ++column)
+        read_run(column * rows_ + first, count,
+                 [&](std::size_t n) -> double& { return values[n * columns_ + column]; });
+    }
+    return values;
+  }
+
+ private:
+  /// Values that follow each other in the file. @param place of the n-th.
+  template <typename Place>
+  void read_run(std::size_t first, std::size_t count, const Place& place) const {
+    std::vector<T> chunk(std::min<std::size_t>(count, 1 << 16));
+    for (std::size_t done = 0; done < count; done += chunk.size()) {
+      const std::size_t some = std::min(chunk.size(), count - done);
+      file_.read_at((first + done) * sizeof(T), chunk.data(), some * sizeof(T));
+      for (std::size_t n = 0; n < some; ++n) {
+        auto* const bytes = reinterpret_cast<unsigned char*>(&chunk[n]);
+        if (swapped_) std::reverse(bytes, bytes + sizeof(T));
+        place(done + n) = chunk[n];
+      }
     }
   }
-}
+
+  SizedFile file_;
+  std::size_t rows_, columns_;
+  bool fortran_order_, swapped_;
+};
 
 }  // namespace
 
-Table read_npy(const std::string& path) {
+std::unique_ptr<RowSource> open_npy(const std::string& path) {
   SizedFile file(path);
   const Header header = read_header(path, &file);
   const bool swapped = header.type.substr(0, 1) == ">";
@@ -200,19 +240,15 @@ Table read_npy(const std::string& path) {
   if (too_many || rows * columns * value_bytes != file.rest())
     fail_damaged(path, fmt::format("its header promises {} x {} values of {} bytes, but {} bytes follow",
                                    rows, columns, value_bytes, file.rest()));
-  Table table{rows, columns, std::vector<double>(rows * columns)};
-  if (value_bytes == sizeof(double)) {
-    read_values<double>(&file, header.fortran_order, swapped, &table);
-  } else {
-    read_values<float>(&file, header.fortran_order, swapped, &table);
-  }
-  return table;
+  if (value_bytes == sizeof(double))
+    return std::make_unique<NpyRows<double>>(std::move(file), header, swapped);
+  return std::make_unique<NpyRows<float>>(std::move(file), header, swapped);
 }
 
-std::string to_npy(const std::vector<float>& values, std::size_t columns) {
+std::string npy_header(std::size_t rows, std::size_t columns) {
   constexpr std::size_t alignment = 64, length_size = 2;
-  const std::string shape = columns == 0 ? fmt::format("({},)", values.size())
-                                         : fmt::format("({}, {})", values.size() / columns, columns);
+  const std::string shape =
+      columns == 0 ? fmt::format("({},)", rows) : fmt::format("({}, {})", rows, columns);
   std::string text = fmt::format("{{'descr': '<f4', 'fortran_order': False, 'shape': {}, }}", shape);
   const std::size_t before = kMagicSize + 2 + length_size;
   text.append(alignment - 1 - (before + text.size()) % alignment, ' ');
@@ -220,7 +256,11 @@ std::string to_npy(const std::vector<float>& values, std::size_t columns) {
 
   std::string bytes(kMagic, kMagicSize);
   bytes += {'\x01', '\x00', static_cast<char>(text.size() & 0xff), static_cast<char>(text.size() >> 8)};
-  bytes += text;
+  return bytes + text;
+}
+
+std::string to_npy(const std::vector<float>& values, std::size_t columns) {
+  std::string bytes = npy_header(columns ? values.size() / columns : values.size(), columns);
   bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float));
   return bytes;
 }

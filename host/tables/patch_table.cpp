@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "host/base/random.h"
-#include "host/tables/query_table.h"
 #include "mica/error.h"
 
 namespace mica::host {
@@ -30,8 +29,8 @@ PatchTable::PatchTable(const std::string& path, PatchQuantity quantity, std::opt
     : path_(path),
       quantity_(quantity),
       columns_(columns_of(quantity).size() - 1),
-      table_(read_query_table(path, columns_of(quantity))) {
-  if (table_.columns > columns_) return;
+      table_(open_query_table(path, columns_of(quantity))) {
+  if (table_.source().columns() > columns_) return;
   if (!roughness)
     throw UsageError(fmt::format("{}: has no column roughness, so --roughness is needed", path));
   roughness_ = *roughness;
@@ -46,7 +45,7 @@ ViewQuery PatchTable::view(std::size_t row) const {
   query.footprint.mean_uv = {table_.at(row, 0), table_.at(row, 1)};
   query.footprint.cov_uv << table_.at(row, 2), table_.at(row, 3), table_.at(row, 3), table_.at(row, 4);
   query.view = direction(row, kView).stableNormalized();
-  query.roughness = table_.columns > columns_ ? table_.at(row, columns_) : roughness_;
+  query.roughness = table_.source().columns() > columns_ ? table_.at(row, columns_) : roughness_;
   return query;
 }
 
@@ -59,8 +58,9 @@ SampleQuery PatchTable::sample(std::size_t row, std::uint64_t seed) const {
   return {view(row), random_bits(seed, 0, row)};
 }
 
-void PatchTable::check(const std::function<std::string(const ViewQuery&)>& view_problem) const {
-  check_rows(path_, size(), [&](std::size_t row) {
+void PatchTable::check(const TableRange& rows,
+                       const std::function<std::string(const ViewQuery&)>& view_problem) const {
+  check_rows(path_, rows, [&](std::size_t row) {
     std::string text = direction_problem("o", direction(row, kView));
     if (text.empty() && quantity_ == PatchQuantity::brdf)
       text = direction_problem("i", direction(row, kLight));

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "host/base/query.h"
-#include "host/tables/table.h"
+#include "host/tables/query_table.h"
 
 namespace mica::host {
 
@@ -25,10 +25,11 @@ class PatchTable {
   /// Throws FileError (unreadable, damaged) or UsageError (other columns, or no roughness at all).
   PatchTable(const std::string& path, PatchQuantity quantity, std::optional<double> roughness);
 
-  std::size_t size() const { return table_.rows; }
+  std::size_t size() const { return table_.source().rows(); }
+  const RowSource& source() const { return table_.source(); }
   /// @param view_problem why a view cannot be answered, or empty. Throws UsageError naming the rows that
   /// cannot be, see `NamedRows`.
-  void check(const std::function<std::string(const ViewQuery&)>& view_problem) const;
+  void check(const TableRange& rows, const std::function<std::string(const ViewQuery&)>& view_problem) const;
 
   BrdfQuery brdf(std::size_t row) const;
   ViewQuery view(std::size_t row) const;
@@ -41,7 +42,7 @@ class PatchTable {
   std::string path_;
   PatchQuantity quantity_;
   std::size_t columns_ = 0;  // without roughness
-  Table table_;
+  RowWindow table_;
   double roughness_ = 0;  // where the table has no such column
 };
 

@@ -107,7 +107,8 @@ TEST_F(UnderWay, DamagedCachesAreBuiltAgain) {
   ASSERT_EQ(render(), 0);
   EXPECT_EQ(fs::status(path("cache/mica")).permissions(), fs::perms(0700));
   std::string binary;
-  for (const auto& entry : fs::directory_iterator(path("cache/mica"))) binary = entry.path().string();
+  for (const auto& entry : fs::directory_iterator(path("cache/mica")))
+    if (entry.path().extension() == ".bin") binary = entry.path().string();
   ASSERT_NE(binary, "");
   const std::string good = bytes(binary);
   std::string flipped = good;

@@ -1,17 +1,16 @@
-#include "host/app/frame_list.h"
+#include "host/job/frame_list.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <charconv>
-#include <cstdlib>
-#include <filesystem>
+#include <cstdint>
 #include <optional>
 #include <set>
 
 #include "mica/error.h"
 
-namespace mica::host::app {
+namespace mica::host {
 namespace {
 
 std::optional<int> to_number(std::string_view text) {
@@ -41,12 +40,8 @@ std::optional<FrameRun> parse_run(std::string_view text) {
 
 }  // namespace
 
-std::vector<int> chosen_frames(const std::string& text, const FrameSettings& frames) {
-  const char* const variable = std::getenv("MICA_FRAMES");
-  const std::string wanted = !text.empty() || !variable ? text : variable;
-  const std::string all = fmt::format("{}-{}", frames.first, frames.last);
-  const std::string given = fmt::format("{}{}", text.empty() ? "MICA_FRAMES=" : "--frames ", wanted);
-  const std::string& list = wanted.empty() ? all : wanted;
+std::vector<int> parse_frames(const std::string& list, const FrameSettings& frames,
+                              const std::string& given) {
   std::set<int> chosen;
   for (std::size_t begin = 0; begin <= list.size();) {
     const std::size_t end = std::min(list.find(',', begin), list.size());
@@ -60,7 +55,8 @@ std::vector<int> chosen_frames(const std::string& text, const FrameSettings& fra
                                     : fmt::format("frames {} to {}", frames.first, frames.last);
       throw UsageError(fmt::format("{}: the job has {}", given, range));
     }
-    for (int frame = run->first; frame <= run->last; frame += run->step) chosen.insert(frame);
+    for (std::int64_t frame = run->first; frame <= run->last; frame += run->step)
+      chosen.insert(static_cast<int>(frame));
     begin = end + 1;
   }
   return {chosen.begin(), chosen.end()};
@@ -81,11 +77,4 @@ std::string frame_list(const std::vector<int>& frames) {
   return fmt::format("{}", fmt::join(runs, ","));
 }
 
-std::string numbered(const std::string& path, int frame) {
-  if (path.empty()) return path;
-  const std::filesystem::path file(path);
-  const std::string name = fmt::format("{}.{:04}{}", file.stem().string(), frame, file.extension().string());
-  return (file.parent_path() / name).string();
-}
-
-}  // namespace mica::host::app
+}  // namespace mica::host
