@@ -128,11 +128,7 @@ std::string Evaluator::method() const {
 std::vector<std::string> Evaluator::choices() const {
   std::vector<std::string> lines;
   for (const host::AutoChoice& choice : host::opened(implementation_).evaluator().choices())
-    lines.push_back(
-        fmt::format("footprints of about {:.3g} texels, roughness from {:.3g}: {}; relative L2 {:.2g}, at "
-                    "most {:.2g}",
-                    std::exp2(choice.kind.size), 0.02 * std::exp2(0.5 * choice.kind.roughness),
-                    choice.evaluator, choice.relative_l2, choice.upper_bound));
+    lines.push_back(host::words(choice));
   return lines;
 }
 
