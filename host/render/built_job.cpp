@@ -7,6 +7,7 @@
 
 #include "host/base/stopwatch.h"
 #include "host/methods/ndf_brdf.h"
+#include "host/methods/triangles/triangle_evaluator.h"
 #include "host/scene/keyframes.h"
 #include "host/surface/in_time.h"
 
@@ -229,7 +230,20 @@ double BuiltJob::device_seconds() const {
   return seconds;
 }
 
+std::vector<Evaluator*> BuiltJob::evaluators() const {
+  std::vector<Evaluator*> pointers;
+  for (const std::unique_ptr<Evaluator>& evaluator : evaluators_) pointers.push_back(evaluator.get());
+  return pointers;
+}
+
+std::unique_ptr<Evaluator> BuiltJob::make_exact_evaluator(std::size_t n) const {
+  return surface(n) ? std::make_unique<TriangleEvaluator>(device_, *surface(n)) : nullptr;
+}
+
 PendingBlock::PendingBlock(TracedRows rows, const BuiltJob& built)
+    : PendingBlock(std::move(rows), built, built.evaluators()) {}
+
+PendingBlock::PendingBlock(TracedRows rows, const BuiltJob& built, const std::vector<Evaluator*>& evaluators)
     : rows_(std::move(rows)), parts_(built.plan().evaluators.size()) {
   std::vector<std::vector<Query>> queries(parts_.size());
   for (std::size_t n = 0; n < rows_.queries.size(); ++n) {
@@ -239,23 +253,22 @@ PendingBlock::PendingBlock(TracedRows rows, const BuiltJob& built)
   }
   for (std::size_t n = 0; n < parts_.size(); ++n) {
     if (queries[n].empty()) continue;
-    if (built.job()
-            .scene.materials[static_cast<std::size_t>(built.plan().evaluators[n].first_material)]
-            .glints)
-      start_glints(&parts_[n], built, n, queries[n]);
+    const auto material = static_cast<std::size_t>(built.plan().evaluators[n].first_material);
+    const std::optional<GlintsDescription>& glints = built.job().scene.materials[material].glints;
+    if (glints)
+      start_glints(&parts_[n], evaluators[n], glints->colors, queries[n]);
     else
-      parts_[n].pending = built.evaluator(n).start(queries[n]);
+      parts_[n].pending = evaluators[n]->start(queries[n]);
   }
 }
 
-void PendingBlock::start_glints(Part* part, const BuiltJob& built, std::size_t evaluator,
+void PendingBlock::start_glints(Part* part, Evaluator* evaluator, const std::vector<Color>& colors,
                                 const std::vector<Query>& queries) {
   std::vector<GlintPoint> points;
   points.reserve(queries.size());
   for (const std::size_t place : part->places) points.push_back(rows_.queries[place].glints);
-  part->pending = built.evaluator(evaluator).start_at(queries, points);
-  const auto material = static_cast<std::size_t>(built.plan().evaluators[evaluator].first_material);
-  part->colors = built.job().scene.materials[material].glints->colors;
+  part->pending = evaluator->start_at(queries, points);
+  part->colors = colors;
 }
 
 /// The mean colour of a query's glints goes into its weight.

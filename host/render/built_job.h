@@ -30,9 +30,12 @@ class BuiltJob {
   const Scene& scene() const { return scene_; }
   /// By PlannedEvaluator; only one that asks for densities.
   Evaluator& evaluator(std::size_t n) const { return *evaluators_[n]; }
+  std::vector<Evaluator*> evaluators() const;  ///< likewise; null for the others
   /// By PlannedEvaluator; of one that is a patch BRDF, and of all when light is gathered.
   PatchBrdf& brdf(std::size_t n) const { return *brdfs_[n]; }
   std::vector<const Surface*> surfaces() const;  ///< by PlannedEvaluator; null without a map
+  /// One as exact as there is: `triangles` on its map; null without a map.
+  std::unique_ptr<Evaluator> make_exact_evaluator(std::size_t n) const;
 
   // Seconds that the latest frame took to build.
   double surface_seconds() const { return surface_seconds_; }
@@ -75,6 +78,8 @@ class BuiltJob {
 class PendingBlock {
  public:
   PendingBlock(TracedRows rows, const BuiltJob& built);
+  /// @param evaluators by PlannedEvaluator, to be asked in place of the job's own.
+  PendingBlock(TracedRows rows, const BuiltJob& built, const std::vector<Evaluator*>& evaluators);
 
   /// Once waited for, the weights of glints are tinted by their colours.
   const TracedRows& rows() const { return rows_; }
@@ -87,7 +92,7 @@ class PendingBlock {
     std::unique_ptr<PendingDensities> pending;
     std::vector<Eigen::Vector3d> colors;  ///< that glints have
   };
-  void start_glints(Part* part, const BuiltJob& built, std::size_t evaluator,
+  void start_glints(Part* part, Evaluator* evaluator, const std::vector<Color>& colors,
                     const std::vector<Query>& queries);
   void tint(const Part& part, const std::vector<float>& densities);
 

@@ -6,6 +6,21 @@
 
 namespace mica::host {
 
+std::vector<Eigen::Vector3d> radiance_of(const TracedRows& rows, const std::vector<float>& densities) {
+  std::vector<Eigen::Vector3d> radiance(rows.radiance.size()), sample_radiance(rows.sample_radiance.size());
+  for (std::size_t pixel = 0; pixel < radiance.size(); ++pixel)
+    radiance[pixel] = rows.radiance[pixel].cast<double>();
+  for (std::size_t n = 0; n < sample_radiance.size(); ++n)
+    sample_radiance[n] = rows.sample_radiance[n].cast<double>();
+  for (std::size_t n = 0; n < densities.size(); ++n) {
+    const GlintQuery& glint = rows.queries[n];
+    (glint.sample == GlintQuery::kNone ? radiance[glint.pixel] : sample_radiance[glint.sample]) +=
+        glint.weight.cast<double>() * static_cast<double>(densities[n]);
+  }
+  add_samples(rows, sample_radiance, &radiance);
+  return radiance;
+}
+
 Film::Film(int width, int height, const std::vector<std::string>& channels) {
   image_.width = width;
   image_.height = height;
@@ -28,20 +43,14 @@ void Film::add(const TracedRows& rows, const std::vector<float>& densities,
   const std::size_t first_pixel = static_cast<std::size_t>(rows.first_row) * image_.width;
   const std::size_t pixels = static_cast<std::size_t>(rows.row_count) * image_.width;
 
-  std::vector<Eigen::Vector3d> radiance(pixels), sample_radiance(rows.sample_radiance.size());
+  const std::vector<Eigen::Vector3d> radiance = radiance_of(rows, densities);
   std::vector<double> density_sum(pixels, 0.0), error_sum(pixels, 0.0);
-  for (std::size_t pixel = 0; pixel < pixels; ++pixel) radiance[pixel] = rows.radiance[pixel].cast<double>();
-  for (std::size_t n = 0; n < sample_radiance.size(); ++n)
-    sample_radiance[n] = rows.sample_radiance[n].cast<double>();
   for (std::size_t n = 0; n < densities.size(); ++n) {
     const GlintQuery& glint = rows.queries[n];
-    (glint.sample == GlintQuery::kNone ? radiance[glint.pixel] : sample_radiance[glint.sample]) +=
-        glint.weight.cast<double>() * static_cast<double>(densities[n]);
     if (glint.pixel == GlintQuery::kNone) continue;
     density_sum[glint.pixel] += densities[n];
     if (!errors.empty()) error_sum[glint.pixel] += errors[n];
   }
-  add_samples(rows, sample_radiance, &radiance);
 
   write(first_pixel, "R", pixels, [&](std::size_t pixel, float* out) {
     Eigen::Map<Eigen::Vector3f>{out} = radiance[pixel].cast<float>();

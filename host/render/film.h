@@ -9,13 +9,16 @@
 
 namespace mica::host {
 
+/// The light of traced pixels; `densities` in the order of their queries, in which they are summed, in double
+/// precision.
+std::vector<Eigen::Vector3d> radiance_of(const TracedRows& rows, const std::vector<float>& densities);
+
 /// Collects traced rows and their densities into the channels of a plan.
 class Film {
  public:
   Film(int width, int height, const std::vector<std::string>& channels);
 
-  /// Adds a block of rows; `densities` in the order of its queries. Sums run in that order, in double
-  /// precision.
+  /// Adds a block of rows; `densities` in the order of its queries.
   /// @param errors estimates of the densities'; empty: there is no channel for them.
   void add(const TracedRows& rows, const std::vector<float>& densities,
            const std::vector<float>& errors = {});

@@ -78,7 +78,7 @@ void render_rows(const BuiltJob& built, const RenderProgress& progress, AuditSam
 }
 
 std::map<std::string, std::string> describe_image(const Job& job, int frame, const DeviceInfo& device,
-                                                  const AuditResult& audit) {
+                                                  const AuditResult& audit, const PictureAudit& picture) {
   std::map<std::string, std::string> metadata;
   metadata["mica:version"] = version();
   metadata["mica:job"] = fmt::format("{:016x}", job.hash);
@@ -90,6 +90,9 @@ std::map<std::string, std::string> describe_image(const Job& job, int frame, con
         fmt::format("{} queries, relative L2 {:.3g}, 99th percentile {:.3g}, maximum {:.3g}", audit.samples,
                     audit.relative_l2, audit.percentile_99, audit.maximum);
   }
+  if (picture.pixels)
+    metadata["mica:audit.picture"] = fmt::format("{} pixels, relative L2 {:.3g}, at most {:.3g} at 95%",
+                                                 picture.pixels, picture.relative_l2, picture.upper_bound);
   return metadata;
 }
 
@@ -114,6 +117,7 @@ RenderResult render_frame(BuiltJob& built, int frame, const DeviceInfo& device,
 
   const Stopwatch auditing;
   result.audit = audit(sampler.samples(), built.surfaces());
+  result.picture_audit = audit_picture(built, result.image);
   result.seconds.audit = auditing.seconds();
   result.seconds.surfaces = built.surface_seconds();
   result.seconds.scene = built.scene_seconds();
@@ -122,7 +126,7 @@ RenderResult render_frame(BuiltJob& built, int frame, const DeviceInfo& device,
   result.device_seconds = built.device_seconds() - device_seconds;
   result.surface_notes = built.notes();
   result.surface_warnings = built.warnings();
-  result.image.metadata = describe_image(job, frame, device, result.audit);
+  result.image.metadata = describe_image(job, frame, device, result.audit, result.picture_audit);
   result.seconds.total = before + total.seconds();
   return result;
 }

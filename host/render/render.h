@@ -9,6 +9,7 @@
 #include "host/job/job.h"
 #include "host/render/audit.h"
 #include "host/render/built_job.h"
+#include "host/render/picture_audit.h"
 #include "host/render/plan.h"
 
 namespace mica::host {
@@ -30,7 +31,8 @@ struct RenderResult {
   std::size_t queries = 0;
   std::size_t device_bytes = 0;  ///< of all structures, as allocated
   double device_seconds = 0;     ///< that kernels ran, by the device's clock
-  AuditResult audit;
+  AuditResult audit;             ///< of queries
+  PictureAudit picture_audit;
   std::vector<std::string> surface_notes, surface_warnings;
 };
 
