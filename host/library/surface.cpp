@@ -111,6 +111,12 @@ Interpolation NormalMap::interpolation() const {
   return static_cast<Interpolation>(implementation()->interpolation());
 }
 
+Span<const double> NormalMap::normals() const {
+  static_assert(sizeof(Eigen::Vector2d) == 2 * sizeof(double), "normals are plain numbers");
+  const std::vector<Eigen::Vector2d>& normals = implementation()->normals();
+  return {normals.front().data(), 2 * normals.size()};
+}
+
 void NormalMap::copy_normals(Span<float> normals) const {
   copy_to(*implementation(), normals);
 }
