@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "host/image/image_header.h"
 #include "host/job/read_surface.h"
 #include "host/surface/disk.h"
 #include "host/surface/surface.h"
@@ -74,6 +75,7 @@ void copy_to(const host::Surface& surface, Span<T> normals) {
 }  // namespace
 
 NormalMap NormalMap::load(const std::string& path, const Settings& settings) {
+  host::identify_image(path);  // a job calls a file that is missing a mistake of its own
   return make_map("file", path, settings);
 }
 

@@ -9,12 +9,13 @@
 """
 
 from mica import _mica
-from mica._device import DeviceInfo, devices
+from mica._device import devices
 from mica._errors import DeviceError, Error, FileError, UsageError
 from mica._evaluator import Energy, Evaluator, Grid, Samples, methods, pndf
 from mica._image import Image
 from mica._job import Job
 from mica._map import NormalMap
+from mica._mica import DeviceInfo
 from mica._tools import bench, selftest
 
 __version__ = _mica.version()

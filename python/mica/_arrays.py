@@ -17,15 +17,16 @@ Columns = dict[str, "float | Numbers"]
 def numbers(name: str, value: ArrayLike) -> Numbers:
     """`value` as float32 or float64 of this machine, without a copy where it is that already."""
     try:
-        array = np.asarray(value) if hasattr(value, "__array__") or not hasattr(value, "__dlpack__") else np.from_dlpack(value)
+        is_dlpack_alone = hasattr(value, "__dlpack__") and not hasattr(value, "__array__")
+        array: NDArray[Any] = np.from_dlpack(value) if is_dlpack_alone else np.asarray(value)  # type: ignore[arg-type]
     except (ValueError, TypeError) as error:
         raise UsageError(f"{name}: {error}") from None
     if array.dtype.kind not in "fiu":
         raise UsageError(f"{name}: found {array.dtype}; expected float32 or float64")
     single = array.dtype.kind == "f" and array.dtype.itemsize == 4
-    array = array.astype(np.float32 if single else np.float64, copy=False)
-    in_place = array.flags.aligned and all(stride % array.itemsize == 0 for stride in array.strides)
-    return array if in_place else array.copy()
+    native: Numbers = array.astype(np.float32 if single else np.float64, copy=False)
+    in_place = native.flags.aligned and all(stride % native.itemsize == 0 for stride in native.strides)
+    return native if in_place else native.copy()
 
 
 def vectors(name: str, value: ArrayLike, length: int) -> Numbers:
@@ -87,8 +88,9 @@ def room(name: str, out: NDArray[np.float32] | None, shape: tuple[int, ...]) -> 
     """Where answers go: new memory, or the caller's."""
     if out is None:
         return np.empty(shape, np.float32)
+    expected = f"expected a C-contiguous, writeable array of float32 of shape {shape}"
+    if not isinstance(out, np.ndarray):
+        raise UsageError(f"{name}: found a {type(out).__name__}; {expected}")
     if out.shape != shape or out.dtype != np.float32 or not out.flags.c_contiguous or not out.flags.writeable:
-        raise UsageError(
-            f"{name}: found {out.dtype} of shape {out.shape}; expected float32 of shape {shape}, C-contiguous and writeable"
-        )
+        raise UsageError(f"{name}: found {out.dtype} of shape {out.shape}; {expected}")
     return out

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import atexit
 from functools import cache
 
 from mica import _mica
@@ -23,3 +24,7 @@ def devices() -> list[DeviceInfo]:
 def open_device(index: int) -> _mica.Device:
     """A device stays open, so that its programs are built once."""
     return _mica.Device(index)
+
+
+# The collector does not look into a device, so that a module that still holds one at the end is never freed.
+atexit.register(open_device.cache_clear)

@@ -78,7 +78,7 @@ class Evaluator:
         ndf: str = "auto",
         tolerance: float | None = None,
         device: int = 0,
-        **settings: object,
+        **settings: Any,
     ) -> None:
         if not (map is None or isinstance(map, NormalMap)):
             raise UsageError(f"map: found a {type(map).__name__}; expected a NormalMap")
@@ -112,7 +112,7 @@ class Evaluator:
     def _lobe(self, roughness: ArrayLike | None, lobe: ArrayLike | None = None) -> dict[str, Numbers]:
         """The columns that say how rough the surface is within a texel."""
         if roughness is None and lobe is None:
-            roughness = self._roughness  # type: ignore[assignment]
+            roughness = self._roughness
         if (roughness is None) == (lobe is None):
             raise UsageError(f"roughness: found {'none' if lobe is None else 'a lobe besides'}; expected one of roughness and lobe")
         if lobe is None:
@@ -408,7 +408,7 @@ class Grid(Evaluator):
         DeviceError: there is no such device, or it failed.
     """
 
-    def __init__(self, *, device: int = 0, **settings: object) -> None:
+    def __init__(self, *, device: int = 0, **settings: Any) -> None:
         super().__init__(None, "grid", device=device, **settings)
 
 
@@ -425,7 +425,7 @@ def pndf(
     window: tuple[float, float, float] = (0, 0, 1),
     out: Floats | None = None,
     progress: Progress | None = None,
-    **settings: object,
+    **settings: Any,
 ) -> Floats:
     """Whole P-NDFs as images: `Evaluator(map, ndf, tolerance, device, **settings).pndf(...)`, which says more.
 

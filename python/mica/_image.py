@@ -60,12 +60,12 @@ class Image(Mapping[str, NDArray[np.float32]]):
     @property
     def width(self) -> int:
         """Pixels."""
-        return self.pixels.shape[1]
+        return int(self.pixels.shape[1])
 
     @property
     def height(self) -> int:
         """Pixels."""
-        return self.pixels.shape[0]
+        return int(self.pixels.shape[0])
 
     @property
     def rgb(self) -> NDArray[np.float32]:

@@ -60,7 +60,7 @@ class NormalMap:
         green: Literal["up", "down"] | None = None,
         interpolation: Interpolation | None = None,
         channels: str | Sequence[str] | None = None,
-        **settings: object,
+        **settings: Any,
     ) -> Self:
         """Reads a map from a picture; docs/files.md says from which.
 
@@ -81,7 +81,7 @@ class NormalMap:
         return cls._of(run(lambda *_: _mica.NormalMap.load(os.fsencode(path), texts)))
 
     @classmethod
-    def generate(cls, kind: str, **settings: object) -> Self:
+    def generate(cls, kind: str, **settings: Any) -> Self:
         """Synthesises a map; the same settings give the same bits.
 
         Args:

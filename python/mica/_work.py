@@ -1,13 +1,15 @@
-"""Long work on a thread of its own, so that Ctrl-C is heard while the engine computes."""
+"""Long work on threads of their own, so that Ctrl-C is heard while the engine computes."""
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
-from dataclasses import dataclass
+from concurrent.futures import ThreadPoolExecutor, wait
+from functools import cache
 from queue import SimpleQueue
-from threading import Thread
-from typing import Generic, TypeVar
+from typing import TypeVar
 
+from mica._errors import DeviceError
 from mica._mica import CancellationToken
 
 Result = TypeVar("Result")
@@ -15,12 +17,13 @@ Progress = Callable[[int, int], object]
 Report = Callable[[int, int], None]
 
 _PATIENCE = 0.3  # seconds that work has to stop in before it is left to end by itself
+_MOST_THREADS = 64  # that wait for devices; the engine computes on its own
 
 
-@dataclass
-class _Ended(Generic[Result]):
-    result: Result | None = None
-    error: BaseException | None = None
+@cache
+def _threads() -> tuple[ThreadPoolExecutor, int]:
+    """Threads that last, since OpenCL keeps something of each that it sees; and the process that they are of."""
+    return ThreadPoolExecutor(_MOST_THREADS, "mica"), os.getpid()
 
 
 def run(work: Callable[[CancellationToken, Report | None], Result], progress: Progress | None = None) -> Result:
@@ -29,31 +32,23 @@ def run(work: Callable[[CancellationToken, Report | None], Result], progress: Pr
     `progress(done, all)` is called on the caller's thread. What it raises, and KeyboardInterrupt, cancels the
     work and passes through. Work that does not stop at once keeps what it needs, and ends unheard.
     """
+    threads, process = _threads()
+    if process != os.getpid():
+        raise DeviceError(
+            "this process was forked from one that had used Mica, without its threads; expected one that was spawned: "
+            'multiprocessing.get_context("spawn")'
+        )
     cancellation = CancellationToken()
-    news: SimpleQueue[tuple[int, int] | _Ended[Result]] = SimpleQueue()
+    news: SimpleQueue[tuple[int, int] | None] = SimpleQueue()
     report = None if progress is None else lambda done, whole: news.put((done, whole))
-
-    def body() -> None:
-        try:
-            news.put(_Ended(result=work(cancellation, report)))
-        except BaseException as error:  # noqa: BLE001: the caller's thread raises it
-            news.put(_Ended(error=error))
-
-    thread = Thread(target=body, name="mica")
+    future = threads.submit(work, cancellation, report)
+    future.add_done_callback(lambda _: news.put(None))
     try:
-        thread.start()
-        while not isinstance(message := news.get(), _Ended):
+        while (message := news.get()) is not None:
             if progress is not None:
                 progress(*message)
     except BaseException:
         cancellation.cancel()
-        if thread.ident is not None:
-            thread.join(_PATIENCE)
+        wait([future], _PATIENCE)
         raise
-    thread.join()
-    try:
-        if message.error is not None:
-            raise message.error
-        return message.result  # type: ignore[return-value]
-    finally:
-        del message  # an error's traceback holds this frame
+    return future.result()

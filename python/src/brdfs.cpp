@@ -11,7 +11,7 @@ Brdf make_brdf(const Device& device, const NormalMap* map, const std::string& me
   });
 }
 
-void evaluate(const Brdf& brdf, std::size_t count, const nb::dict& columns, int part, const Room& values,
+void evaluate(const Brdf& brdf, std::size_t count, const ColumnDict& columns, int part, const Room& values,
               const CancellationToken& cancellation, nb::handle report) {
   Columns table(count, columns);
   const Lightings queries = table.lightings();
@@ -19,7 +19,7 @@ void evaluate(const Brdf& brdf, std::size_t count, const nb::dict& columns, int 
   without_gil([&] { brdf.evaluate(queries, to_span(values), static_cast<BrdfPart>(part), control); });
 }
 
-void energy(const Brdf& brdf, std::size_t count, const nb::dict& columns, const Room& albedos,
+void energy(const Brdf& brdf, std::size_t count, const ColumnDict& columns, const Room& albedos,
             const CancellationToken& cancellation, nb::handle report) {
   Columns table(count, columns);
   const Views views = table.views();
@@ -27,7 +27,7 @@ void energy(const Brdf& brdf, std::size_t count, const nb::dict& columns, const 
   without_gil([&] { brdf.energy(views, to_span(albedos), control); });
 }
 
-void sample(const Brdf& brdf, std::size_t count, const nb::dict& columns, std::uint64_t seed,
+void sample(const Brdf& brdf, std::size_t count, const ColumnDict& columns, std::uint64_t seed,
             const Room& samples, const CancellationToken& cancellation, nb::handle report) {
   Columns table(count, columns);
   const Views views = table.views();

@@ -6,6 +6,8 @@
 
 namespace mica::python {
 
+using ColumnDict = nb::typed<nb::dict, nb::str, nb::any>;
+
 /// Queries as the Python side hands them over: each column's name with a number, or with an array of one
 /// dimension that is read in place. It keeps these arrays; the GIL has to be held where it ends.
 class Columns {

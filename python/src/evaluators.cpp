@@ -13,7 +13,7 @@ Evaluator make_evaluator(const Device& device, const NormalMap* map, const std::
   });
 }
 
-void evaluate(const Evaluator& evaluator, std::size_t count, const nb::dict& columns, const Room& densities,
+void evaluate(const Evaluator& evaluator, std::size_t count, const ColumnDict& columns, const Room& densities,
               const CancellationToken& cancellation, nb::handle report) {
   Columns table(count, columns);
   const Queries queries = table.queries();
@@ -21,7 +21,7 @@ void evaluate(const Evaluator& evaluator, std::size_t count, const nb::dict& col
   without_gil([&] { evaluator.evaluate(queries, to_span(densities), control); });
 }
 
-void estimate_errors(const Evaluator& evaluator, std::size_t count, const nb::dict& columns,
+void estimate_errors(const Evaluator& evaluator, std::size_t count, const ColumnDict& columns,
                      const Room& densities, const Room& errors) {
   Columns table(count, columns);
   const Queries queries = table.queries();
@@ -32,7 +32,7 @@ void estimate_errors(const Evaluator& evaluator, std::size_t count, const nb::di
 }
 
 /// @param window (s, t, radius).
-void draw(const Evaluator& evaluator, std::size_t count, const nb::dict& columns,
+void draw(const Evaluator& evaluator, std::size_t count, const ColumnDict& columns,
           const std::vector<double>& window, int pixels, const Room& images,
           const CancellationToken& cancellation, nb::handle report) {
   Columns table(count, columns);

@@ -46,7 +46,10 @@ void bind_maps(nb::module_& module) {
             return without_gil([&] { return NormalMap::generate(kind, to_settings(settings)); });
           },
           nb::arg("kind"), nb::arg("settings"))
-      .def_static("from_normals", &map_of, nb::arg("normals"), nb::arg("interpolation"))
+      .def_static(
+          "from_normals", &map_of, nb::arg("normals"), nb::arg("interpolation"),
+          nb::sig(
+              "def from_normals(normals: numpy.typing.NDArray[typing.Any], interpolation: int) -> NormalMap"))
       .def_prop_ro("width", &NormalMap::width)
       .def_prop_ro("height", &NormalMap::height)
       .def_prop_ro("interpolation",

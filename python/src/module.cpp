@@ -1,4 +1,6 @@
 // mica._mica: the public library, class by class. What users see of it is in python/mica.
+#include <cstdlib>
+
 #include "python/src/bindings.h"
 
 namespace mica::python {
@@ -24,6 +26,8 @@ RunControl to_control(const CancellationToken& cancellation, nb::handle report) 
 
 NB_MODULE(_mica, module) {
   using namespace mica::python;
+  // What a user's program still holds at its end is freed with the process; only tests want to hear of it.
+  nb::set_leak_warnings(std::getenv("MICA_LEAK_WARNINGS") != nullptr);
   bind_errors(module);
   bind_devices(module);
   bind_maps(module);

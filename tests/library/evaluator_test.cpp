@@ -192,7 +192,7 @@ TEST(LibraryMap, RefusesWhatIsNoMap) {
   EXPECT_THROW(NormalMap::from_normals(4, 4, normals, 3), UsageError);
   normals[5] = -1;
   EXPECT_THROW(NormalMap::from_normals(4, 4, normals, 3), UsageError);
-  EXPECT_THROW(NormalMap::load("/nowhere/map.exr"), Error);
+  EXPECT_THROW(NormalMap::load("/nowhere/map.exr"), FileError);
   EXPECT_THROW(NormalMap::generate("spektrum"), UsageError);
   EXPECT_THROW(NormalMap::generate("spectrum", {{"rms_slope", 99}}), UsageError);
   EXPECT_THROW(NormalMap::generate("spectrum", {{"rms_slop", 0.1}}), UsageError);
