@@ -65,7 +65,8 @@ def broadcast(parts: Mapping[str, Numbers]) -> tuple[tuple[int, ...], Columns]:
         found = ", ".join(f"{name} {part.shape}" for name, part in parts.items())
         raise UsageError(f"queries of shapes that do not go together: {found}") from None
     return shape, {
-        name: float(part) if part.ndim == 0 else np.broadcast_to(part, shape).reshape(-1) for name, part in parts.items()
+        name: float(part) if part.ndim == 0 else np.broadcast_to(part, shape).reshape(-1)
+        for name, part in parts.items()
     }
 
 

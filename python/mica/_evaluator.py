@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, Literal, NamedTuple, TypeVar
+from typing import Any, Literal, TypeVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from mica import _mica
+from mica._answers import Energy, Floats, Samples
 from mica._arrays import Columns, Numbers, broadcast, count_of, matrices, numbers, room, split, table, vectors
 from mica._device import open_device
 from mica._errors import UsageError
@@ -16,7 +17,6 @@ from mica._map import NormalMap, Sigma
 from mica._settings import method_settings
 from mica._work import Progress, Report, run
 
-Floats = NDArray[np.float32]
 Part = Literal["single", "multiple", "all"]
 Handle = TypeVar("Handle", _mica.Evaluator, _mica.Brdf)
 
@@ -27,37 +27,12 @@ _TURN = ("su", "sv", "tu", "tv")
 _FORMS = (_QUERY, (*_QUERY, "roughness"), (*_QUERY, *_LOBE, *_TURN))
 
 
-class Energy(NamedTuple):
-    """What becomes of the light that a white patch receives, float32 each."""
-
-    single: Floats
-    """Share that leaves after one bounce, towards anywhere: [Che19]'s E1."""
-    lost: Floats
-    """Share that is lost."""
-
-
-class Samples(NamedTuple):
-    """Directions drawn towards the light, float32 each."""
-
-    light: Floats
-    """(..., 3) unit vectors."""
-    pdf: Floats
-    """Density of each over the sphere; 0: nothing was drawn."""
-    weight: Floats
-    """BRDF times cosine over pdf."""
-
-
-def methods() -> dict[str, str]:
-    """Every method's name, with a line on what it is."""
-    return {name: _mica.method_info(name).summary for name in _mica.method_names()}
-
-
 class Evaluator:
     """Answers questions about one surface by one method, in batches on one OpenCL device.
 
     D(s, t) is the density of the normals that a Gaussian footprint sees, over the unit disk of half vectors, each
-    normal blurred by an intrinsic roughness: [Yan14] Eq. 6. An answer depends on its question alone, to the bit, whatever
-    the batch and the number of threads. Threads may share an evaluator; their calls wait for each other.
+    normal blurred by an intrinsic roughness: [Yan14] Eq. 6. An answer depends on its question alone, to the bit,
+    whatever the batch and the number of threads. Threads may share an evaluator; their calls wait for each other.
 
     Args:
         map: the surface; None for the method "grid", which has none (see Grid).
@@ -114,7 +89,8 @@ class Evaluator:
         if roughness is None and lobe is None:
             roughness = self._roughness
         if (roughness is None) == (lobe is None):
-            raise UsageError(f"roughness: found {'none' if lobe is None else 'a lobe besides'}; expected one of roughness and lobe")
+            found = "none" if lobe is None else "a lobe besides"
+            raise UsageError(f"roughness: found {found}; expected one of roughness and lobe")
         if lobe is None:
             assert roughness is not None
             return {"roughness": numbers("roughness", roughness)}
@@ -194,8 +170,8 @@ class Evaluator:
             roughness: of all rows, where the table has none.
 
         Returns:
-            (rows,) float32, in the density's units. Of "auto" it follows from the relative L2, at 95% confidence, of the
-            query's class of size and roughness (see `choices`).
+            (rows,) float32, in the density's units. Of "auto" it follows from the relative L2, at 95% confidence, of
+            the query's class of size and roughness (see `choices`).
 
         Raises:
             UsageError: the method does not tell.
@@ -248,7 +224,8 @@ class Evaluator:
             progress: called with (images done, all) now and then.
 
         Returns:
-            (n, size, size) float32: D at the centres of pixels, rows from the top (t = 1), s to the right; 0 off the disk.
+            (n, size, size) float32: D at the centres of pixels, rows from the top (t = 1), s to the right; 0 off the
+            disk.
 
         Raises:
             UsageError: names the first footprint that cannot be answered.
@@ -316,9 +293,7 @@ class Evaluator:
         run(work, progress)
         return values
 
-    def energy(
-        self, uv: ArrayLike, cov: ArrayLike, view: ArrayLike, roughness: ArrayLike | None = None
-    ) -> Energy:
+    def energy(self, uv: ArrayLike, cov: ArrayLike, view: ArrayLike, roughness: ArrayLike | None = None) -> Energy:
         """What a white patch scatters to the view at once, and what it loses; arguments and errors as of `brdf`.
 
         Returns:
@@ -360,9 +335,7 @@ class Evaluator:
             zip(("cuu", "cuv", "cvv"), matrices("cov", cov, symmetric=True))
         )
 
-    def _views(
-        self, uv: ArrayLike, cov: ArrayLike, view: ArrayLike, roughness: ArrayLike | None
-    ) -> dict[str, Numbers]:
+    def _views(self, uv: ArrayLike, cov: ArrayLike, view: ArrayLike, roughness: ArrayLike | None) -> dict[str, Numbers]:
         directions = split(("ox", "oy", "oz"), vectors("view", view, 3))
         return self._footprints(uv, cov) | directions | self._lobe(roughness)
 
@@ -391,49 +364,3 @@ class Evaluator:
         about = [repr(self.ndf)] + ([] if self._map is None else [f"{self._map.width} x {self._map.height} texels"])
         about += [f"{key}={value!r}" for key, value in self._settings.items() if value is not None]
         return f"{type(self).__name__}({', '.join(about)}; {self.bytes / 2**20:.1f} MiB on device {self._device_index})"
-
-
-class Grid(Evaluator):
-    """Glints without a map: random ones on an implicit grid, in constant time. [Kem25]
-
-    Takes the questions of an Evaluator. `roughness` is that of one glint; unless a call has one, it is the setting
-    `microroughness`, where that is given.
-
-    Args:
-        device: its number in `mica.devices()`.
-        settings: the method's, named as in a job: `density`, `alpha`, `microroughness`, `distribution`, `seed`, ...
-
-    Raises:
-        UsageError: for unknown settings, and values that they do not take.
-        DeviceError: there is no such device, or it failed.
-    """
-
-    def __init__(self, *, device: int = 0, **settings: Any) -> None:
-        super().__init__(None, "grid", device=device, **settings)
-
-
-def pndf(
-    map: NormalMap,
-    centers: ArrayLike,
-    sigma: Sigma,
-    roughness: ArrayLike,
-    size: int = 256,
-    *,
-    ndf: str = "auto",
-    tolerance: float | None = None,
-    device: int = 0,
-    window: tuple[float, float, float] = (0, 0, 1),
-    out: Floats | None = None,
-    progress: Progress | None = None,
-    **settings: Any,
-) -> Floats:
-    """Whole P-NDFs as images: `Evaluator(map, ndf, tolerance, device, **settings).pndf(...)`, which says more.
-
-    Returns:
-        (n, size, size) float32: D at the centres of pixels, rows from the top (t = 1), s to the right; 0 off the disk.
-
-    Raises:
-        UsageError, DeviceError: as of Evaluator and of Evaluator.pndf.
-    """
-    evaluator = Evaluator(map, ndf, tolerance, device, **settings)
-    return evaluator.pndf(centers, sigma, roughness, size, window=window, out=out, progress=progress)

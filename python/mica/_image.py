@@ -79,6 +79,7 @@ class Image(Mapping[str, NDArray[np.float32]]):
         """Writes FILE.exr with all channels, or FILE.png for the eye; whole or not at all.
 
         Args:
+            path: its ending says which.
             exposure: stops more than the image's own, of a PNG.
 
         Raises:

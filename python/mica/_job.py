@@ -41,6 +41,7 @@ class Job:
         """Reads a job file.
 
         Args:
+            path: TOML; file names in it are relative to its folder.
             set: values to put in place of the file's, as of `mica render --set`.
 
         Raises:
@@ -79,7 +80,9 @@ class Job:
     def render(self, frames: int | None = None, *, device: int = 0, progress: Progress | None = None) -> Image: ...
 
     @overload
-    def render(self, frames: Iterable[int], *, device: int = 0, progress: Progress | None = None) -> Iterator[Image]: ...
+    def render(
+        self, frames: Iterable[int], *, device: int = 0, progress: Progress | None = None
+    ) -> Iterator[Image]: ...
 
     def render(
         self, frames: int | Iterable[int] | None = None, *, device: int = 0, progress: Progress | None = None

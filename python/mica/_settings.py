@@ -25,7 +25,9 @@ def toml_value(name: str, value: object) -> str:
     if isinstance(value, str):  # a JSON string is a TOML string, but for one character
         return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
     if isinstance(value, Mapping):
-        return "{ " + ", ".join(f"{_key(name, key)} = {toml_value(f'{name}.{key}', v)}" for key, v in value.items()) + " }"
+        return (
+            "{ " + ", ".join(f"{_key(name, key)} = {toml_value(f'{name}.{key}', v)}" for key, v in value.items()) + " }"
+        )
     if isinstance(value, (list, tuple)):
         return "[" + ", ".join(toml_value(f"{name}[{n}]", v) for n, v in enumerate(value)) + "]"
     raise UsageError(f"{name}: found a {type(value).__name__}; expected a number, a text, a list or a dict")

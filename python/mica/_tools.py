@@ -46,7 +46,8 @@ def selftest(*, device: int = 0) -> dict[str, Any]:
     """Checks the accuracy of a device's arithmetic and of every kernel: `mica selftest`.
 
     Returns:
-        What `mica selftest --json` writes: `pass`, whether the device is to be trusted, and each check with its verdict.
+        What `mica selftest --json` writes: `pass`, whether the device is to be trusted, and each check with its
+        verdict.
 
     Raises:
         DeviceError: there is no such device, or it failed before it was judged.

@@ -1,4 +1,4 @@
-"""What tests share. They run against the installed module; the command is what MICA_COMMAND names, or the module's own."""
+"""What tests share. They run against the installed module and the command that MICA_COMMAND names, or its own."""
 
 import os
 import subprocess
@@ -78,3 +78,7 @@ def job():
 def root():
     """The repository."""
     return Path(__file__).resolve().parents[2]
+
+
+def pytest_sessionstart():
+    assert Path(mica.__file__).is_relative_to(sys.prefix), f"{mica.__file__}: expected the installed module"

@@ -73,7 +73,13 @@ def test_patches(tmp_path, loaded, map_file, method, quantity):
     parts = rows[:, :2], rows[:, 2:5], directions(300, 1)
     light, roughness = directions(300, 2), rows[:, 7]
     table = np.column_stack([*parts, *([light] if quantity == "brdf" else []), roughness])
-    options = ["--ndf", method, "--quantity", quantity, *(["--seed", "7"] if quantity == "sample" and method != "grid" else [])]
+    options = [
+        "--ndf",
+        method,
+        "--quantity",
+        quantity,
+        *(["--seed", "7"] if quantity == "sample" and method != "grid" else []),
+    ]
     expected = answers_of_command(tmp_path, table, *options, *map_options(method, map_file))
     evaluator = evaluator_of(method, loaded)
     if quantity == "brdf":
@@ -118,7 +124,9 @@ def test_jobs(tmp_path, root, name):
 )
 def test_errors_have_the_same_words(tmp_path, arguments, ask):
     np.save(tmp_path / "q.npy", rows_of(1, 64))
-    done = run_command("eval", *arguments, "--ndf", "triangles", "--queries", tmp_path / "q.npy", "-o", tmp_path / "d.npy")
+    done = run_command(
+        "eval", *arguments, "--ndf", "triangles", "--queries", tmp_path / "q.npy", "-o", tmp_path / "d.npy"
+    )
     with pytest.raises(mica.Error) as raised:
         ask()
     assert done.stderr.strip() == f"mica: {raised.value}"

@@ -20,9 +20,7 @@ def test_rows_and_parts_are_the_same_queries(triangles, rows):
 
 def test_covariances_are_matrices_or_three_numbers(triangles, rows):
     matrices = rows[:, [2, 3, 3, 4]].reshape(-1, 2, 2)
-    np.testing.assert_array_equal(
-        triangles(rows[:, :2], matrices, rows[:, 5:7], rows[:, 7]), triangles.eval(rows)
-    )
+    np.testing.assert_array_equal(triangles(rows[:, :2], matrices, rows[:, 5:7], rows[:, 7]), triangles.eval(rows))
 
 
 @pytest.mark.parametrize(
@@ -73,7 +71,9 @@ def test_lobes_and_turns_stand_in_rows_of_fourteen(triangles, rows):
     round_lobe = triangles(table[:, :2], table[:, 2:5], table[:, 5:7], 0.03)
     assert not np.array_equal(densities, round_lobe)
     matrix = 0.03**2 * np.eye(2)
-    np.testing.assert_allclose(triangles(table[:, :2], table[:, 2:5], table[:, 5:7], lobe=matrix), round_lobe, rtol=1e-3, atol=1e-3)
+    np.testing.assert_allclose(
+        triangles(table[:, :2], table[:, 2:5], table[:, 5:7], lobe=matrix), round_lobe, rtol=1e-3, atol=1e-3
+    )
 
 
 def test_shapes_are_broadcast_together(triangles, noise):
@@ -185,7 +185,7 @@ def test_refuses_a_roughness_beside_a_lobe(triangles):
     [
         ("triangle", {}, "triangle"),
         ("grid", {}, "grid needs no map"),
-        ("gaussians", {"element": 2}, "gaussians: found the setting \"element\""),
+        ("gaussians", {"element": 2}, 'gaussians: found the setting "element"'),
         ("gaussians", {"elements": 9}, "elements"),
         ("gaussians", {"tolerance": 0.01}, "tolerance"),
         ("auto", {"tolerance": "small"}, "tolerance"),

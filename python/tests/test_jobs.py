@@ -92,7 +92,9 @@ def test_texts_of_any_kind_stay_what_they_are(text):
 
     from mica._settings import toml_document
 
-    assert tomllib.loads(toml_document({"a": {"b": [text, 1.5, 1e-9, True, -3]}})) == {"a": {"b": [text, 1.5, 1e-9, True, -3]}}
+    assert tomllib.loads(toml_document({"a": {"b": [text, 1.5, 1e-9, True, -3]}})) == {
+        "a": {"b": [text, 1.5, 1e-9, True, -3]}
+    }
 
 
 def test_sets_values_in_place_of_the_jobs(job, tmp_path):

@@ -103,7 +103,9 @@ def test_refuses_an_unknown_interpolation():
 @pytest.mark.parametrize("interpolation", ["nearest", "bilinear", "bicubic"])
 def test_knows_its_interpolation(interpolation):
     assert mica.NormalMap(slopes(), interpolation).interpolation == interpolation
-    assert mica.NormalMap.generate("spectrum", resolution=16, interpolation=interpolation).interpolation == interpolation
+    assert (
+        mica.NormalMap.generate("spectrum", resolution=16, interpolation=interpolation).interpolation == interpolation
+    )
 
 
 def test_synthesised_maps_have_the_settings_that_they_are_given():
