@@ -112,7 +112,7 @@ class Image(Mapping[str, NDArray[np.float32]]):
         return len(self._names)
 
     def __array__(self, dtype: DTypeLike | None = None, copy: bool | None = None) -> NDArray[Any]:
-        return np.array(self.pixels, dtype=dtype, copy=True) if copy else np.asarray(self.pixels, dtype=dtype)
+        return np.asarray(self.pixels, dtype) if copy is None else np.array(self.pixels, dtype, copy=copy)
 
     def __dlpack__(self, **options: Any) -> Any:
         return self.pixels.__dlpack__(**options)

@@ -142,7 +142,7 @@ class NormalMap:
         return np.array([[a[i] * a[j] + b[i] * b[j] for j in (0, 1)] for i in (0, 1)])
 
     def __array__(self, dtype: DTypeLike | None = None, copy: bool | None = None) -> NDArray[Any]:
-        return np.array(self.array, dtype=dtype, copy=True) if copy else np.asarray(self.array, dtype=dtype)
+        return np.asarray(self.array, dtype) if copy is None else np.array(self.array, dtype, copy=copy)
 
     def __dlpack__(self, **options: Any) -> Any:
         return self.array.copy().__dlpack__(**options)  # who receives it may write to it

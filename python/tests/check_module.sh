@@ -8,21 +8,31 @@ export PIP_DISABLE_PIP_VERSION_CHECK=1 PIP_ROOT_USER_ACTION=ignore
 mkdir -p "$work"
 cd "$work"
 
-fetched=$("$python" --version; cat "$source/python/tests/requirements.txt")
-if ! cmp -s <(echo "$fetched") packages/fetched; then
-  rm -rf packages
-  "$python" -m pip download --quiet --dest packages -r "$source/python/tests/requirements.txt"
-  echo "$fetched" > packages/fetched
-fi
-
-rm -rf environment library wheel
+rm -rf environment library wheel lacking
 "$python" -m venv environment
 pip=(environment/bin/python -m pip)
-"${pip[@]}" install --quiet --no-index --find-links packages -r "$source/python/tests/requirements.txt"
+requirements=$source/python/tests/requirements.txt
+fetched=$("$python" --version; cat "$requirements")
+if ! cmp -s <(echo "$fetched") packages/fetched; then
+  rm -rf packages
+  "${pip[@]}" download --quiet --dest packages -r "$requirements"
+  echo "$fetched" > packages/fetched
+fi
+"${pip[@]}" install --quiet --no-index --find-links packages -r "$requirements"
 
 cmake --install "$build" --prefix "$work/library" --component development > install.log
 "${pip[@]}" wheel --quiet --no-deps --no-build-isolation --wheel-dir wheel --config-settings=build-dir="$work/build" \
   --config-settings=cmake.define.MICA_PREFIX="$work/library" "$source"
 "${pip[@]}" install --quiet --no-index --no-deps wheel/*.whl
+
+# Without a C++ package it says in one sentence what to install.
+if cmake -S "$source/python" -B lacking -DCMAKE_DISABLE_FIND_PACKAGE_embree=TRUE \
+  -DPython_EXECUTABLE="$PWD/environment/bin/python" \
+  -Dnanobind_DIR="$(environment/bin/python -m nanobind --cmake_dir)" &> lacking.log ||
+  ! tr -s ' \n' ' ' < lacking.log | grep -q 'lacks embree here: on Debian 12 .* sudo apt-get install g++ .*libembree-dev'; then
+  cat lacking.log
+  echo "configured without embree: expected to be told what to install"
+  exit 1
+fi
 
 MICA_COMMAND=$build/mica environment/bin/python -m pytest --quiet -p no:cacheprovider "$source/python/tests"

@@ -152,6 +152,24 @@ def test_python_m_mica_is_the_command_line(tmp_path):
     assert run("devices").stdout == run_command("devices").stdout
 
 
+def test_signals_end_the_command_line_as_they_end_the_command(tmp_path, map_file):
+    import signal
+    import subprocess
+    import sys
+    import time
+
+    np.save(tmp_path / "q.npy", np.repeat([[0.5, 0.5, 0.01, 0, 0.01, 0.1, 0.1, 0.02]], 10**5, axis=0))
+    words = ["eval", "--map", map_file, "--ndf", "reference", "--queries", tmp_path / "q.npy", "-o", tmp_path / "d.npy"]
+    running = subprocess.Popen([sys.executable, "-m", "mica", *map(str, words)], stderr=subprocess.PIPE, text=True)
+    time.sleep(2)
+    running.send_signal(signal.SIGINT)
+    _, log = running.communicate(timeout=20)
+    assert running.returncode == 130, log
+    assert "nothing unfinished was written" in log
+    assert "Traceback" not in log
+    assert not (tmp_path / "d.npy").exists()
+
+
 def test_bench_is_the_commands(tmp_path):
     with pytest.raises(mica.UsageError, match="slow"):
         mica.bench("slow")

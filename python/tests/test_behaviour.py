@@ -217,6 +217,21 @@ def test_memory_stays_flat_over_calls(triangles, rows):
     assert resident_bytes() - before < 2**20
 
 
+def test_without_a_device_it_is_said():
+    done = python("""
+        import os
+        os.environ["OCL_ICD_VENDORS"] = "/nowhere"
+        import mica
+        print(mica.devices())
+        try:
+            mica.Evaluator(mica.NormalMap.generate("spectrum", resolution=16))
+        except mica.DeviceError as error:
+            print(error)
+        """)
+    assert done.stdout.startswith("[]"), done.stderr
+    assert "OpenCL" in done.stdout
+
+
 def test_forked_children_are_told_to_spawn(triangles, rows):
     code = textwrap.dedent("""
         import os, sys

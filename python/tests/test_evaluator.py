@@ -338,3 +338,4 @@ def test_devices_tell_what_they_are():
     assert device.name
     assert device.compute_units > 0
     assert device.memory_bytes >= device.buffer_bytes > 0
+    assert repr(device).startswith(f"DeviceInfo('{device.name}' of ")

@@ -172,6 +172,7 @@ def test_its_array_is_its_own_memory_and_outlives_it():
 def test_is_an_array_to_numpy_and_to_dlpack(noise):
     np.testing.assert_array_equal(np.asarray(noise), noise.array)
     assert np.asarray(noise, np.float32).dtype == np.float32
+    assert np.array(noise, copy=True).flags.writeable
     copy = np.from_dlpack(noise)
     np.testing.assert_array_equal(copy, noise.array)
     assert copy.ctypes.data != noise.array.ctypes.data

@@ -73,8 +73,8 @@ def describe_class(cls):
     if issubclass(cls, Exception):
         bases = ", ".join(base.__name__ for base in cls.__bases__)
         return [*parts, f"```python\nclass {cls.__name__}({bases})\n```", markdown(cls.__doc__)]
-    if cls.__doc__ is None:  # of the library itself, told by `devices`
-        return []
+    if cls is mica.DeviceInfo:  # of the bindings, whose functions have no signature
+        return [*parts, cls.__doc__ + " See `devices`."]
     if not issubclass(cls, tuple):
         parts.append(signature(cls.__name__, cls.__init__))
     parts.append(markdown(cls.__doc__))
