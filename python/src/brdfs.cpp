@@ -11,8 +11,8 @@ Brdf make_brdf(const Device& device, const NormalMap* map, const std::string& me
   });
 }
 
-void evaluate(const Brdf& brdf, std::size_t count, const ColumnDict& columns, int part, const Room& values,
-              const CancellationToken& cancellation, nb::handle report) {
+void evaluate_brdf(const Brdf& brdf, std::size_t count, const ColumnDict& columns, int part,
+                   const Room& values, const CancellationToken& cancellation, nb::handle report) {
   Columns table(count, columns);
   const Lightings queries = table.lightings();
   const RunControl control = to_control(cancellation, report);
@@ -41,7 +41,7 @@ void bind_brdfs(nb::module_& module) {
   nb::class_<Brdf>(module, "Brdf")
       .def_static("make", &make_brdf, nb::arg("device"), nb::arg("map").none(), nb::arg("method"),
                   nb::arg("settings"))
-      .def("evaluate", &evaluate, nb::arg("count"), nb::arg("columns"), nb::arg("part"),
+      .def("evaluate", &evaluate_brdf, nb::arg("count"), nb::arg("columns"), nb::arg("part"),
            nb::arg("values").noconvert(), nb::arg("cancellation"), nb::arg("report").none())
       .def("energy", &energy, nb::arg("count"), nb::arg("columns"), nb::arg("albedos").noconvert(),
            nb::arg("cancellation"), nb::arg("report").none())

@@ -13,8 +13,8 @@ Evaluator make_evaluator(const Device& device, const NormalMap* map, const std::
   });
 }
 
-void evaluate(const Evaluator& evaluator, std::size_t count, const ColumnDict& columns, const Room& densities,
-              const CancellationToken& cancellation, nb::handle report) {
+void evaluate_densities(const Evaluator& evaluator, std::size_t count, const ColumnDict& columns,
+                        const Room& densities, const CancellationToken& cancellation, nb::handle report) {
   Columns table(count, columns);
   const Queries queries = table.queries();
   const RunControl control = to_control(cancellation, report);
@@ -49,8 +49,8 @@ void bind_evaluators(nb::module_& module) {
   nb::class_<Evaluator>(module, "Evaluator")
       .def_static("make", &make_evaluator, nb::arg("device"), nb::arg("map").none(), nb::arg("method"),
                   nb::arg("settings"))
-      .def("evaluate", &evaluate, nb::arg("count"), nb::arg("columns"), nb::arg("densities").noconvert(),
-           nb::arg("cancellation"), nb::arg("report").none())
+      .def("evaluate", &evaluate_densities, nb::arg("count"), nb::arg("columns"),
+           nb::arg("densities").noconvert(), nb::arg("cancellation"), nb::arg("report").none())
       .def("estimate_errors", &estimate_errors, nb::arg("count"), nb::arg("columns"), nb::arg("densities"),
            nb::arg("errors").noconvert())
       .def("draw", &draw, nb::arg("count"), nb::arg("columns"), nb::arg("window"), nb::arg("pixels"),

@@ -103,13 +103,14 @@ def test_images(tmp_path, loaded, map_file, method):
     np.testing.assert_array_equal(images.reshape(20, -1), np.load(tmp_path / "i.npy"))
 
 
-@pytest.mark.parametrize("name", ["first", "glitter"])
-def test_jobs(tmp_path, root, name):
+@pytest.mark.parametrize(("name", "more"), [("first", {"surface.bumps.resolution": 256}), ("glitter", {})])
+def test_jobs(tmp_path, root, name, more):
     job = root / "data" / "jobs" / f"{name}.toml"
-    small = ["--set", "image.width=32", "--set", "image.height=18", "--set", "image.subpixels=1"]
-    done = run_command("render", job, *small, "--quiet", "-o", tmp_path / "a.exr")
+    small = {"image.width": 32, "image.height": 18, "image.subpixels": 1, **more}
+    words = [word for key, value in small.items() for word in ("--set", f"{key}={value}")]
+    done = run_command("render", job, *words, "--quiet", "-o", tmp_path / "a.exr")
     assert done.returncode == 0, done.stderr
-    image = mica.Job.load(job, set={"image": {"width": 32, "height": 18, "subpixels": 1}}).render()
+    image = mica.Job.load(job, set=small).render()
     image.write(tmp_path / "b.exr")
     image.write(tmp_path / "b.png")
     for ending in (".exr", ".png"):
