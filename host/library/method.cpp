@@ -145,6 +145,12 @@ std::vector<std::string> Methods::names() const {
   return implementation_->names([](const host::MethodTraits&) { return true; });
 }
 
+MethodInfo Methods::info(const std::string& name) const {
+  const host::Method& method = implementation_->get(name);
+  const host::MethodTraits traits = method.traits();
+  return {name, method.summary(), traits.map, traits.densities, traits.brdf, traits.keeps_tolerance};
+}
+
 std::vector<std::string> Methods::settings_of(const std::string& name) const {
   std::vector<std::string> lines;
   for (const host::SettingEntry& entry : host::list_settings(*implementation_->get(name).settings()))
