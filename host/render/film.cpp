@@ -1,6 +1,8 @@
 #include "host/render/film.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "host/scene/aovs.h"
 
@@ -23,6 +25,15 @@ void Film::write(std::size_t first_pixel, const std::string& first_channel, std:
   for (std::size_t pixel = 0; pixel < pixels; ++pixel, out += stride) write_pixel(pixel, out);
 }
 
+void Film::repair(std::vector<Eigen::Vector3d>* light) {
+  constexpr double largest = std::numeric_limits<float>::max();
+  for (Eigen::Vector3d& color : *light) {
+    if (color.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= largest) continue;
+    color.setZero();
+    ++repairs_.not_finite;
+  }
+}
+
 void Film::add(const TracedRows& rows, const std::vector<float>& densities,
                const std::vector<float>& errors) {
   const std::size_t first_pixel = static_cast<std::size_t>(rows.first_row) * image_.width;
@@ -41,7 +52,14 @@ void Film::add(const TracedRows& rows, const std::vector<float>& densities,
     density_sum[glint.pixel] += densities[n];
     if (!errors.empty()) error_sum[glint.pixel] += errors[n];
   }
+  repair(&sample_radiance);  // before neighbouring pixels share them
   add_samples(rows, sample_radiance, &radiance);
+  repair(&radiance);
+  for (Eigen::Vector3d& color : radiance) {
+    if (color.minCoeff() >= 0) continue;
+    color = color.cwiseMax(0);
+    ++repairs_.negative;
+  }
 
   write(first_pixel, "R", pixels, [&](std::size_t pixel, float* out) {
     Eigen::Map<Eigen::Vector3f>{out} = radiance[pixel].cast<float>();
@@ -49,6 +67,8 @@ void Film::add(const TracedRows& rows, const std::vector<float>& densities,
   for (const Aov& aov : aovs())
     write(first_pixel, aov.channel(0), pixels, [&](std::size_t pixel, float* out) {
       aov.write({rows, pixel, density_sum[pixel], error_sum[pixel]}, out);
+      for (std::size_t part = 0; part < aov.parts.size(); ++part)
+        if (!std::isfinite(out[part])) out[part] = 0, ++repairs_.not_finite;
     });
 }
 

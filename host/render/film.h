@@ -9,6 +9,12 @@
 
 namespace mica::host {
 
+/// What a film could not say as a number of an image, and left black.
+struct FilmRepairs {
+  std::size_t not_finite = 0;  ///< light of pixels and of samples, and other channels' numbers
+  std::size_t negative = 0;    ///< light of pixels
+};
+
 /// Collects traced rows and their densities into the channels of a plan.
 class Film {
  public:
@@ -21,6 +27,7 @@ class Film {
            const std::vector<float>& errors = {});
 
   Image take() { return std::move(image_); }
+  const FilmRepairs& repairs() const { return repairs_; }
 
  private:
   /// Calls `write_pixel` for pixels from `first_pixel` on, with where a channel and those after it are;
@@ -28,7 +35,12 @@ class Film {
   void write(std::size_t first_pixel, const std::string& first_channel, std::size_t pixels,
              const std::function<void(std::size_t pixel, float* out)>& write_pixel);
 
+  /// What single precision cannot say becomes black: a lamp may be as near, or a pixel as small, as its
+  /// numbers allow.
+  void repair(std::vector<Eigen::Vector3d>* light);
+
   Image image_;
+  FilmRepairs repairs_;
 };
 
 }  // namespace mica::host

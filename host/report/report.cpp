@@ -84,6 +84,9 @@ std::string render_json(const Job& job, const DeviceInfo& device, const RenderRe
                    {"relative_l2", result.audit.relative_l2},
                    {"percentile_99", result.audit.percentile_99},
                    {"maximum", result.audit.maximum}};
+  json["repairs"] = {{"not_finite", result.repairs.not_finite},
+                     {"negative", result.repairs.negative},
+                     {"replaced_answers", result.replaced_answers}};
   json["notes"] = result.surface_notes;
   json["warnings"] = result.surface_warnings;
   return json.dump(2) + "\n";
