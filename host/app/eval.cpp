@@ -55,6 +55,7 @@ nlohmann::json summary(const EvalOptions& options, const EvalSubject& subject, c
   json["seconds"] = {
       {"load", times.load}, {"build", times.build}, {"evaluate", times.evaluate}, {"device", times.device}};
   json["queries"] = count;
+  json["replaced_answers"] = open.evaluator->replaced();
   json["queries_per_second"] = times.evaluate > 0 ? static_cast<double>(count) / times.evaluate : 0.0;
   json["output"] = options.output;
   return json;
@@ -100,6 +101,8 @@ int run(const EvalOptions& options) {
   times.device = open.evaluator->device_seconds();
 
   write_file_atomically(options.output, to_npy(densities));
+  if (const std::size_t replaced = open.evaluator->replaced())
+    spdlog::warn("{} densities were not finite: the oracle answered in their place", replaced);
   spdlog::info("{} queries by {} on {} in {:.3g} s", densities.size(), open.evaluator->name(),
                open.device ? open.device->info().name : "the host", times.evaluate);
   if (!options.json.empty())

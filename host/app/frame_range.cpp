@@ -20,21 +20,21 @@ std::optional<int> to_number(std::string_view text) {
 
 }  // namespace
 
-void choose_frames(const std::string& text, FrameSettings* frames) {
-  if (text.empty()) return;
+FrameRange choose_frames(const std::string& text, const FrameSettings& frames) {
+  if (text.empty()) return {frames.first, frames.last};
   const std::string_view view = text;
   const std::size_t dash = view.find('-');
   const std::optional<int> first = to_number(view.substr(0, dash));
   const std::optional<int> last = dash == view.npos ? first : to_number(view.substr(dash + 1));
   if (!first || !last || *first > *last)
     throw UsageError(fmt::format("--frames {}: expected A-B or A, A not above B", text));
-  if (*first < frames->first || *last > frames->last) {
-    const std::string range = frames->first == frames->last
-                                  ? fmt::format("one frame, {}", frames->first)
-                                  : fmt::format("frames {} to {}", frames->first, frames->last);
+  if (*first < frames.first || *last > frames.last) {
+    const std::string range = frames.first == frames.last
+                                  ? fmt::format("one frame, {}", frames.first)
+                                  : fmt::format("frames {} to {}", frames.first, frames.last);
     throw UsageError(fmt::format("--frames {}: the job has {}", text, range));
   }
-  frames->first = *first, frames->last = *last;
+  return {*first, *last};
 }
 
 std::string numbered(const std::string& path, int frame) {

@@ -77,7 +77,7 @@ class FrameLoop {
     } catch (const Error& error) {
       if (!job_.frames.given) throw;
       spdlog::error("frame {}: {}", frame, error.what());
-      reports_.push_back(failure_json(frame, error.what()));
+      report([&] { return failure_json(frame, error.what()); });
       failed_ = exit_code_of(error.kind());
     }
   }
@@ -101,17 +101,26 @@ class FrameLoop {
     say_once(result.surface_notes, result.surface_warnings);
     if (!names.exr.empty()) write_exr(names.exr, result.image);
     write_png(names.png, result.image, job_.image.exposure, job_.image.tone_map);
-    reports_.push_back(render_json(job_, device_, result));
+    report([&] { return render_json(job_, device_, result); });
     if (options_.quiet) return;
     say("{}", render_summary(device_, result));
     say("wrote     {}{}{}\n", names.exr, names.exr.empty() ? "" : " and ", names.png);
   }
 
+  /// Reports are kept only for who wants them: a sequence may be long.
+  template <typename Make>
+  void report(const Make& make) {
+    if (!options_.json.empty()) reports_.push_back(make());
+  }
+
+  /// What was not said of the frame before.
   void say_once(const std::vector<std::string>& notes, const std::vector<std::string>& warnings) {
     for (const std::string& note : notes)
-      if (said_.insert(note).second) spdlog::info("{}", note);
+      if (said_.count(note) == 0) spdlog::info("{}", note);
     for (const std::string& warning : warnings)
-      if (said_.insert(warning).second) spdlog::warn("{}", warning);
+      if (said_.count(warning) == 0) spdlog::warn("{}", warning);
+    said_ = {notes.begin(), notes.end()};
+    said_.insert(warnings.begin(), warnings.end());
   }
 
   const RenderOptions& options_;
@@ -126,20 +135,19 @@ class FrameLoop {
 
 int run(const RenderOptions& options, const MethodRegistry& methods) {
   const OutputNames names = output_names(options);
-  Job job = load_job(options.job, options.overrides, methods, options.max_memory.bytes());
-  choose_frames(options.frames, &job.frames);
+  const Job job = load_job(options.job, options.overrides, methods, options.max_memory.bytes());
+  const FrameRange frames = choose_frames(options.frames, job.frames);
   const Plan plan = make_plan(job);
   Device device(options.device);
-  const int first = job.frames.first, last = job.frames.last;
-  std::vector<std::string> at_once = outputs_of(names, job, first, first);
+  std::vector<std::string> at_once = outputs_of(names, job, frames.first, frames.first);
   at_once.push_back(options.json);
-  const Outputs outputs(at_once, input_files(job), outputs_of(names, job, first + 1, last));
+  const Outputs outputs(at_once, input_files(job), outputs_of(names, job, frames.first + 1, frames.last));
 
   if (!options.quiet) say("{}", describe(plan));
-  BuiltJob built(job, plan, device);
+  BuiltJob built(job, plan, device, frames.first);
   FrameLoop loop(options, job, names, device.info());
   loop.say_findings(built);
-  for (int frame = job.frames.first; frame <= job.frames.last; ++frame) loop.render(built, frame);
+  for (int frame = frames.first; frame <= frames.last; ++frame) loop.render(built, frame);
   if (!options.json.empty()) write_file_atomically(options.json, loop.json());
   return static_cast<int>(loop.exit_code());
 }

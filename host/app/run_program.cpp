@@ -6,9 +6,15 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <new>
 
+#include "host/app/exit_code.h"
 #include "host/app/run_command.h"
 #include "host/base/interrupt.h"
+#include "host/base/leftovers.h"
 #include "mica/method.h"
 
 namespace mica::host::app {
@@ -21,15 +27,36 @@ void occupy_closed_streams() {
       open("/dev/null", O_RDONLY);  // so that writing fails, too
 }
 
+/// Libraries take memory in destructors, which cannot pass on that there is none.
+[[noreturn]] void end_without_unwinding() {
+  try {
+    if (const std::exception_ptr error = std::current_exception()) std::rethrow_exception(error);
+  } catch (const std::bad_alloc&) {
+    remove_leftovers();
+    std::fputs("mica: the host's memory does not suffice\n", stderr);
+    _exit(static_cast<int>(ExitCode::device));
+  } catch (...) {
+  }
+  std::abort();
+}
+
 }  // namespace
 
 int run_program(int argc, const char* const* argv, const MethodRegistry& methods) {
   occupy_closed_streams();
-  spdlog::set_default_logger(spdlog::stderr_color_mt("mica"));
-  spdlog::set_error_handler([](const std::string&) {});  // a full log does not end the work
-  spdlog::set_pattern("%^%l%$: %v");
-  catch_interrupts();
-  return run_command(argc, argv, methods);
+  std::set_terminate(end_without_unwinding);
+  try {
+    spdlog::set_default_logger(spdlog::stderr_color_mt("mica"));
+    spdlog::set_error_handler([](const std::string&) {});  // a full log does not end the work
+    spdlog::set_pattern("%^%l%$: %v");
+    catch_interrupts();
+    return run_command(argc, argv, methods);
+  } catch (const std::exception& error) {  // no memory, not even to say so as others are said
+    std::fputs("mica: ", stderr);
+    std::fputs(error.what(), stderr);
+    std::fputs("\n", stderr);
+    return static_cast<int>(ExitCode::device);
+  }
 }
 
 }  // namespace mica::host::app

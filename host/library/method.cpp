@@ -90,8 +90,8 @@ class OutsideMethod : public Method {
   StructureSize structure(const StructureAsked& asked, const MethodSettings&) const override {
     return {0, method_->bytes(asked.width, asked.height), "none"};
   }
-  std::unique_ptr<Evaluator> make(Device*, const Surface* surface,
-                                  const MethodSettings& settings) const override {
+  std::unique_ptr<Evaluator> make_own(Device*, const Surface* surface,
+                                      const MethodSettings& settings) const override {
     if (!takes(surface->interpolation()))
       throw UsageError(fmt::format("{} does not take a surface of this interpolation", name()));
     const NormalMap map(std::make_shared<Surface>(*surface));  // the method may keep it

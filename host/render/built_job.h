@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "host/base/findings.h"
 #include "host/device/device.h"
 #include "host/job/job.h"
 #include "host/methods/evaluator.h"
@@ -18,8 +19,10 @@ namespace mica::host {
 /// Everything that a plan names, built: surfaces, scene, and evaluators on the device; at one frame.
 class BuiltJob {
  public:
-  /// At the job's first frame. All three must outlive it. Throws mica::Error.
+  /// At the job's first frame, or another of its frames. Job, plan and device must outlive it. Throws
+  /// mica::Error.
   BuiltJob(const Job& job, const Plan& plan, Device& device);
+  BuiltJob(const Job& job, const Plan& plan, Device& device, int frame);
 
   /// Goes on to another frame: camera and lights move, surfaces that change are made again, and nothing else.
   void go_to(int frame);
@@ -44,12 +47,15 @@ class BuiltJob {
   std::size_t device_bytes() const;  ///< of all structures, as allocated
   double device_seconds() const;     ///< that kernels ran so far, by the device's clock
 
-  const std::vector<std::string>& notes() const { return notes_; }        ///< of surfaces and images
-  const std::vector<std::string>& warnings() const { return warnings_; }  ///< of surfaces and images
+  std::size_t replaced_answers() const;  ///< so far; see Evaluator::replaced
+
+  std::vector<std::string> notes() const;     ///< of surfaces and images
+  std::vector<std::string> warnings() const;  ///< of surfaces and images
 
  private:
   Surface make_surface_of(std::size_t n, int frame);
   void build_evaluator(std::size_t n);
+  Scene scene_at(int frame) const;
   std::vector<std::optional<Surface>> make_surfaces();
   std::vector<double> masking_alphas() const;
   LightGathering gathering() const;
@@ -67,8 +73,11 @@ class BuiltJob {
   int frame_;
   double surface_seconds_ = 0, scene_seconds_ = 0, build_seconds_ = 0;
   double past_device_seconds_ = 0;  // of evaluators that are no more
-  std::vector<std::string> notes_, warnings_;
-  std::vector<std::optional<Surface>> surfaces_;  // by PlannedEvaluator
+  std::size_t past_replaced_answers_ = 0;
+  // By PlannedEvaluator: what was found of the surface, what its method chose, and the surface.
+  std::vector<Findings> surface_findings_;
+  std::vector<std::vector<std::string>> choices_;
+  std::vector<std::optional<Surface>> surfaces_;
   Scene scene_;
   std::vector<std::unique_ptr<Evaluator>> evaluators_;
   std::vector<std::unique_ptr<PatchBrdf>> brdfs_;

@@ -9,9 +9,18 @@
 
 namespace mica::host {
 
+/// What a film could not say as a number of an image, and left black.
+struct FilmRepairs {
+  std::size_t not_finite = 0;  ///< light of pixels and of samples, and other channels' numbers
+  std::size_t negative = 0;    ///< light of pixels
+};
+
 /// The light of traced pixels; `densities` in the order of their queries, in which they are summed, in double
-/// precision.
-std::vector<Eigen::Vector3d> radiance_of(const TracedRows& rows, const std::vector<float>& densities);
+/// precision. What single precision cannot say becomes black: a lamp may be as near, or a pixel as small, as
+/// its numbers allow.
+/// @param repairs are counted there.
+std::vector<Eigen::Vector3d> radiance_of(const TracedRows& rows, const std::vector<float>& densities,
+                                         FilmRepairs* repairs);
 
 /// Collects traced rows and their densities into the channels of a plan.
 class Film {
@@ -24,6 +33,7 @@ class Film {
            const std::vector<float>& errors = {});
 
   Image take() { return std::move(image_); }
+  const FilmRepairs& repairs() const { return repairs_; }
 
  private:
   /// Calls `write_pixel` for pixels from `first_pixel` on, with where a channel and those after it are;
@@ -32,6 +42,7 @@ class Film {
              const std::function<void(std::size_t pixel, float* out)>& write_pixel);
 
   Image image_;
+  FilmRepairs repairs_;
 };
 
 }  // namespace mica::host

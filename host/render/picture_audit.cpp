@@ -75,8 +75,9 @@ class Reference {
     for (const DrawnPixel& pixel : drawn) {
       PendingBlock block(built_.scene().trace_pixel(pixel.row, pixel.column, pixels_), built_, evaluators_);
       const std::vector<float> densities = block.wait();
-      result.push_back(
-          static_cast<float>(pixel.scale * luminance(radiance_of(block.rows(), densities).front())));
+      FilmRepairs repairs;  // the picture has counted its own
+      result.push_back(static_cast<float>(pixel.scale *
+                                          luminance(radiance_of(block.rows(), densities, &repairs).front())));
     }
     return result;
   }

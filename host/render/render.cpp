@@ -74,7 +74,20 @@ void render_rows(const BuiltJob& built, const RenderProgress& progress, AuditSam
     in_flight = std::move(next);
   }
   result->image = film.take();
+  result->repairs = film.repairs();
   result->seconds.render = total.seconds();
+}
+
+std::vector<std::string> describe_repairs(int frame, const RenderResult& result) {
+  std::vector<std::string> lines;
+  const auto say = [&](std::size_t count, const char* what) {
+    if (count > 0) lines.push_back(fmt::format("frame {}: {} {}", frame, count, what));
+  };
+  say(result.replaced_answers, "densities were not finite: the oracle answered in their place");
+  say(result.repairs.not_finite,
+      "values of pixels or samples were not finite in single precision: left at 0");
+  say(result.repairs.negative, "pixels were negative: raised to 0");
+  return lines;
 }
 
 std::map<std::string, std::string> describe_image(const Job& job, int frame, const DeviceInfo& device,
@@ -112,6 +125,7 @@ RenderResult render_frame(BuiltJob& built, int frame, const DeviceInfo& device,
     built.go_to(frame);
   }
   const double device_seconds = built.device_seconds();
+  const std::size_t replaced_answers = built.replaced_answers();
   AuditSampler sampler(job.seed, job.audit.samples);
   render_rows(built, progress, &sampler, &result);
 
@@ -124,8 +138,10 @@ RenderResult render_frame(BuiltJob& built, int frame, const DeviceInfo& device,
   result.seconds.build = built.build_seconds();
   result.device_bytes = built.device_bytes();
   result.device_seconds = built.device_seconds() - device_seconds;
+  result.replaced_answers = built.replaced_answers() - replaced_answers;
   result.surface_notes = built.notes();
   result.surface_warnings = built.warnings();
+  for (const std::string& line : describe_repairs(frame, result)) result.surface_warnings.push_back(line);
   result.image.metadata = describe_image(job, frame, device, result.audit, result.picture_audit);
   result.seconds.total = before + total.seconds();
   return result;

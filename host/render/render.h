@@ -9,6 +9,7 @@
 #include "host/job/job.h"
 #include "host/render/audit.h"
 #include "host/render/built_job.h"
+#include "host/render/film.h"
 #include "host/render/picture_audit.h"
 #include "host/render/plan.h"
 
@@ -33,6 +34,8 @@ struct RenderResult {
   double device_seconds = 0;     ///< that kernels ran, by the device's clock
   AuditResult audit;             ///< of queries
   PictureAudit picture_audit;
+  FilmRepairs repairs;
+  std::size_t replaced_answers = 0;  ///< that were not finite, and are the oracle's
   std::vector<std::string> surface_notes, surface_warnings;
 };
 

@@ -89,6 +89,9 @@ std::string render_json(const Job& job, const DeviceInfo& device, const RenderRe
                            {"upper_bound", result.picture_audit.upper_bound},
                            {"reference_subpixels", result.picture_audit.subpixels},
                            {"reference_l2", result.picture_audit.reference_l2}};
+  json["repairs"] = {{"not_finite", result.repairs.not_finite},
+                     {"negative", result.repairs.negative},
+                     {"replaced_answers", result.replaced_answers}};
   json["notes"] = result.surface_notes;
   json["warnings"] = result.surface_warnings;
   return json.dump(2) + "\n";

@@ -202,5 +202,22 @@ TEST(MomentPyramid, TakesTheFinestLevelsThatFit) {
   EXPECT_EQ(levels_that_fit(surface, 0.03, 1).finest_block, 512);
 }
 
+/// Counting needs no moments; what is light is told without them, nearly.
+TEST(MomentPyramid, CountsTheCellsThatItWouldHave) {
+  const Surface surface = noise(70, 52);
+  for (const double width : {0.004, 0.03}) {
+    const NormalCells cells(surface, width);
+    BlockMoments moments(surface, cells);
+    CellCounter counter(surface, cells);
+    for (const int corner : {0, 32}) {
+      std::vector<CellMoments> parts = moments.block(corner, corner, 32);
+      const CellCount count = counter.count(corner, corner, 32);
+      EXPECT_EQ(count.whole, static_cast<std::int64_t>(parts.size())) << width;
+      const auto compact = static_cast<double>(without_light_cells(cells, std::move(parts)).size());
+      EXPECT_NEAR(static_cast<double>(count.compact), compact, 0.02 * compact) << width;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace mica::host::moment_pyramid_test
