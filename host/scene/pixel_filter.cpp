@@ -53,6 +53,15 @@ double integral(double reach, const Function& f) {
   return sum * 2 * reach / steps;
 }
 
+/// Without the Gaussians that hardly count.
+FilterSum without_light_parts(FilterSum sum) {
+  const double least = 1e-6 * *std::max_element(sum.weights.begin(), sum.weights.end());
+  double total = 0;
+  for (double& weight : sum.weights) total += weight = weight < least ? 0 : weight;
+  for (double& weight : sum.weights) weight /= total;
+  return sum;
+}
+
 /// The least squares of `gram` w = `right` among weights that are not negative: those that would be are
 /// dropped, the most negative first.
 Eigen::VectorXd weights_of(const Eigen::MatrixXd& gram, const Eigen::VectorXd& right) {
@@ -152,6 +161,11 @@ int PixelFilter::margin_pixels() const {
 }
 
 FilterSum PixelFilter::on_lattice(int subpixels) const {
+  const FilterSum sum = whole_lattice(subpixels);
+  return reference_subpixels_ > 0 ? without_light_parts(sum) : sum;
+}
+
+FilterSum PixelFilter::whole_lattice(int subpixels) const {
   const auto count = static_cast<std::size_t>(2 * margin_pixels() + 1) * static_cast<std::size_t>(subpixels);
   const double spacing = 1.0 / subpixels, width = description_.width;
   const double sigma = (reference_subpixels_ > 0 ? kReferenceSigma : kLatticeSigma) * spacing;

@@ -56,6 +56,8 @@ class PixelFilter {
   FilterSum by_few() const;
 
  private:
+  FilterSum whole_lattice(int subpixels) const;
+
   FilterDescription description_;
   int reference_subpixels_ = 0;  // for a reference: that define the kind of that name; else 0
 };

@@ -166,6 +166,13 @@ class BlockTracer {
     return row >= first_seen_ && row < end_seen_ && column >= 0 && column < width_ &&
            fits_.at(row, column).has_value();
   }
+  /// Whether a sample has weight in a pixel, of a part that is one: by subpixels from its first ones.
+  bool is_seen(int down, int right) const {
+    if (width_ != 1 || rows_.row_count != 1) return true;
+    const auto offset = margin_ * pixels_.subpixels;
+    return lattice_filter_.weights[static_cast<std::size_t>(down + offset)] > 0 &&
+           lattice_filter_.weights[static_cast<std::size_t>(right + offset)] > 0;
+  }
   bool is_sampled(int row, int column) const {
     return row >= first_seen_ && row < end_seen_ && column >= 0 && column < width_ && !has_fit(row, column);
   }
@@ -300,6 +307,10 @@ void BlockTracer::sample_cell(int row, int column, std::uint32_t first_sample, R
   std::vector<SeenPoint> points;
   for (int k = 0; k < n * n; ++k) {
     const int right = k % n, down = k / n;
+    if (!is_seen(row * n + down, column * n + right)) {
+      points.emplace_back();
+      continue;
+    }
     points.push_back(viewer_.look(first_column_ + column + (right + 0.5) / n,
                                   first_row_ + row + (down + 0.5) / n,
                                   shadow_sample(key(row, column), k, n)));
