@@ -103,7 +103,13 @@ def test_images(tmp_path, loaded, map_file, method):
     np.testing.assert_array_equal(images.reshape(20, -1), np.load(tmp_path / "i.npy"))
 
 
-@pytest.mark.parametrize(("name", "more"), [("first", {"surface.bumps.resolution": 256}), ("glitter", {})])
+@pytest.mark.parametrize(
+    ("name", "more"),
+    [
+        ("first", {"surface.bumps.resolution": 256, "image.exposure": 1.5, "image.tone_map": "filmic"}),
+        ("glitter", {}),
+    ],
+)
 def test_jobs(tmp_path, root, name, more):
     job = root / "data" / "jobs" / f"{name}.toml"
     small = {"image.width": 32, "image.height": 18, "image.subpixels": 1, **more}
@@ -158,11 +164,14 @@ def test_signals_end_the_command_line_as_they_end_the_command(tmp_path, map_file
     import subprocess
     import sys
     import time
+    from pathlib import Path
 
     np.save(tmp_path / "q.npy", np.repeat([[0.5, 0.5, 0.01, 0, 0.01, 0.1, 0.1, 0.02]], 10**5, axis=0))
     words = ["eval", "--map", map_file, "--ndf", "reference", "--queries", tmp_path / "q.npy", "-o", tmp_path / "d.npy"]
     running = subprocess.Popen([sys.executable, "-m", "mica", *map(str, words)], stderr=subprocess.PIPE, text=True)
-    time.sleep(2)
+    maps = Path(f"/proc/{running.pid}/maps")
+    while running.poll() is None and "pocl" not in maps.read_text():  # it is at work
+        time.sleep(0.05)
     running.send_signal(signal.SIGINT)
     _, log = running.communicate(timeout=20)
     assert running.returncode == 130, log
