@@ -103,7 +103,13 @@ def test_images(tmp_path, loaded, map_file, method):
     np.testing.assert_array_equal(images.reshape(20, -1), np.load(tmp_path / "i.npy"))
 
 
-@pytest.mark.parametrize(("name", "more"), [("first", {"surface.bumps.resolution": 256}), ("glitter", {})])
+@pytest.mark.parametrize(
+    ("name", "more"),
+    [
+        ("first", {"surface.bumps.resolution": 256, "image.exposure": 1.5, "image.tone_map": "filmic"}),
+        ("glitter", {}),
+    ],
+)
 def test_jobs(tmp_path, root, name, more):
     job = root / "data" / "jobs" / f"{name}.toml"
     small = {"image.width": 32, "image.height": 18, "image.subpixels": 1, **more}
@@ -157,15 +163,14 @@ def test_signals_end_the_command_line_as_they_end_the_command(tmp_path, map_file
     import signal
     import subprocess
     import sys
-    import time
 
-    np.save(tmp_path / "q.npy", np.repeat([[0.5, 0.5, 0.01, 0, 0.01, 0.1, 0.1, 0.02]], 10**5, axis=0))
+    np.save(tmp_path / "q.npy", np.repeat([[0.5, 0.5, 0.001, 0, 0.001, 0.1, 0.1, 0.02]], 10**5, axis=0))
     words = ["eval", "--map", map_file, "--ndf", "reference", "--queries", tmp_path / "q.npy", "-o", tmp_path / "d.npy"]
     running = subprocess.Popen([sys.executable, "-m", "mica", *map(str, words)], stderr=subprocess.PIPE, text=True)
-    time.sleep(2)
+    progress = running.stderr.readline()  # it is at work
     running.send_signal(signal.SIGINT)
     _, log = running.communicate(timeout=20)
-    assert running.returncode == 130, log
+    assert running.returncode == 130, progress + log
     assert "nothing unfinished was written" in log
     assert "Traceback" not in log
     assert not (tmp_path / "d.npy").exists()

@@ -48,6 +48,14 @@ def test_takes_rows_at_any_address(triangles, rows):
     np.testing.assert_array_equal(triangles.eval(unaligned), triangles.eval(rows))
 
 
+def test_takes_fields_of_records(triangles, rows):
+    """Whose numbers are no whole number of numbers apart."""
+    records = np.zeros(len(rows), [("name", "S3"), ("query", np.float64, 8)])
+    records["query"] = rows
+    assert records["query"].strides[0] % 8 != 0
+    np.testing.assert_array_equal(triangles.eval(records["query"]), triangles.eval(rows))
+
+
 def test_singles_are_read_as_they_are(triangles, rows):
     single = rows.astype(np.float32)
     np.testing.assert_array_equal(triangles.eval(single), triangles.eval(single.astype(np.float64)))

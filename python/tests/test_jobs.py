@@ -56,6 +56,7 @@ def test_frames_come_one_by_one(job):
     assert [image.metadata["mica:frame"] for image in images] == ["0", "1", "2"]
     assert not np.array_equal(images[0], images[2])
     np.testing.assert_array_equal(made.render(2), images[2])
+    np.testing.assert_array_equal(made.render(), images[0])
     assert "frames 0 to 2" in repr(made)
 
 
