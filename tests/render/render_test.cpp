@@ -181,7 +181,7 @@ TEST(Render, CountsWhatAPictureCannotHold) {
 TEST(Render, AutoFramesDependOnTheirNumberAlone) {
   const std::string path = temporary_path("render_auto_test.toml");
   std::ofstream(path) << R"(
-image = { width = 16, height = 16, subpixels = 2 }
+image = { width = 16, height = 16, subpixels = 3, filter = "subpixels" }
 camera = { keys = [{ frame = 0, position = [0, -40, 20] }, { frame = 2, position = [0, -0.5, 0.3] }] }
 surface.w = { generate = "waves", resolution = 16, patch = 50 }
 surface.f = { generate = "flakes", resolution = 64 }
