@@ -33,7 +33,7 @@ struct FrameSettings {
   double seconds(int frame) const { return frame / rate; }
 };
 
-constexpr int kAuditedPixels = 64;  ///< by default, where queries are audited
+constexpr int kAuditedPixels = 32;  ///< by default, where queries are audited
 
 struct AuditSettings {
   int samples = 0;  ///< queries of the job that the oracle re-evaluates

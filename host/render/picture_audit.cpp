@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::uint64_t kDraws = 0x70697865;   // a stream of its own
 constexpr int kFewestSubpixels = 4;            // of a reference
-constexpr int kMostSubpixels = 64;             // likewise
+constexpr int kMostSubpixels = 32;             // likewise
 constexpr double kAgreementOfTolerance = 0.1;  // of two references
 constexpr double kQuantile = 1.6449;           // of the normal distribution, at 95%
 
@@ -114,7 +114,7 @@ PictureAudit audit_picture(const BuiltJob& built, const Image& image) {
   const SampledError error = sampled_error(shown, expected, kQuantile);
   audit.pixels = static_cast<int>(drawn.size());
   audit.relative_l2 = error.relative_l2;
-  audit.upper_bound = error.upper_bound;
+  audit.upper_bound = error.upper_bound + audit.reference_l2;
   return audit;
 }
 

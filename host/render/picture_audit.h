@@ -10,7 +10,7 @@ namespace mica::host {
 struct PictureAudit {
   int pixels = 0;           ///< that were drawn; 0: no audit
   double relative_l2 = 0;   ///< of luminance: sqrt(sum (Y - ref)^2 / sum ref^2), as these tell it
-  double upper_bound = 0;   ///< of that of the whole picture, at 95% confidence
+  double upper_bound = 0;   ///< of that of the whole picture, at 95% confidence, and of the reference's own
   int subpixels = 0;        ///< samples a pixel and axis of the reference
   double reference_l2 = 0;  ///< between it and one of half as many
 };

@@ -118,7 +118,8 @@ TEST(PictureAudit, TellsTheErrorOfThePicture) {
 /// One footprint with a constant half vector is further from its own filter than sixteen.
 TEST(PictureAudit, CountsWhatConstantHalfVectorsLose) {
   const auto audit_of = [](const std::string& subpixels) {
-    return render_job({"image.filter=subpixels", "image.subpixels=" + subpixels, "audit.samples=40"})
+    return render_job({"image.filter=subpixels", "image.subpixels=" + subpixels, "audit.samples=1",
+                       "audit.pixels=40"})
         .picture_audit;
   };
   const PictureAudit one = audit_of("1"), four = audit_of("4");

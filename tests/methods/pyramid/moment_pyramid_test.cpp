@@ -215,7 +215,9 @@ TEST(MomentPyramid, CountsTheCellsThatItWouldHave) {
       EXPECT_EQ(count.whole, static_cast<std::int64_t>(parts.size())) << width;
       const auto compact = static_cast<double>(without_light_cells(cells, std::move(parts)).size());
       EXPECT_NEAR(static_cast<double>(count.compact), compact, 0.02 * compact) << width;
-      if (width > 0.01) EXPECT_LT(compact, 0.95 * static_cast<double>(count.whole)) << "no cell is light";
+      if (width > 0.01) {
+        EXPECT_LT(compact, 0.95 * static_cast<double>(count.whole)) << "no cell is light";
+      }
     }
   }
 }
