@@ -101,31 +101,27 @@ std::vector<CellMoments> BlockMoments::take() {
 }
 
 CellCounter::CellCounter(const Surface& surface, const NormalCells& cells)
-    : surface_(surface), cells_(cells), weight_of_cell_(cells.count(), -1.0) {}
+    : surface_(surface), cells_(cells), sums_(cells.count()) {}
 
 CellCount CellCounter::count(int first_i, int first_j, int size) {
   TexelPieces<CellCounter> pieces(surface_, cells_.width(), this);
   for (int j = first_j; j < std::min(first_j + size, surface_.height()); ++j)
     for (int i = first_i; i < std::min(first_i + size, surface_.width()); ++i) pieces.cut(i, j);
-  double weight = 0;
-  for (const int cell : touched_) weight += weight_of_cell_[cell];
-  const double light = kLight * weight / static_cast<double>(touched_.size());
-  CellCount count;
-  count.whole = static_cast<std::int64_t>(touched_.size());
-  for (const int cell : touched_)
-    if (weight_of_cell_[cell] > light || !has_neighbour(cell)) ++count.compact;
-  for (const int cell : touched_) weight_of_cell_[cell] = -1;
+  std::sort(touched_.begin(), touched_.end());
+  std::vector<CellMoments> parts(
+      touched_.size());  // of which light cells need the weight and the mean normal
+  for (std::size_t n = 0; n < parts.size(); ++n) {
+    Sum& sum = sums_[touched_[n]];
+    parts[n].cell = touched_[n];
+    parts[n].moments.weight = sum.weight;
+    parts[n].moments.first.tail<2>() = sum.normal;
+    sum = {};
+  }
   touched_.clear();
+  CellCount count;
+  count.whole = static_cast<std::int64_t>(parts.size());
+  count.compact = static_cast<std::int64_t>(without_light_cells(cells_, std::move(parts)).size());
   return count;
-}
-
-bool CellCounter::has_neighbour(int cell) const {
-  for (const int row : {-1, 0, 1})
-    for (const int column : {-1, 0, 1}) {
-      const int other = cell + row * cells_.columns() + column;
-      if (other != cell && other >= 0 && other < cells_.count() && weight_of_cell_[other] > 0) return true;
-    }
-  return false;
 }
 
 std::vector<CellMoments> without_light_cells(const NormalCells& cells, std::vector<CellMoments> parts) {
