@@ -1,5 +1,7 @@
 """The module and the command line answer with the same bits."""
 
+import json
+
 import numpy as np
 import pytest
 
@@ -113,7 +115,7 @@ def test_images(tmp_path, loaded, map_file, method):
 def test_jobs(tmp_path, root, name, more):
     job = root / "data" / "jobs" / f"{name}.toml"
     small = {"image.width": 32, "image.height": 18, "image.subpixels": 1, **more}
-    words = [word for key, value in small.items() for word in ("--set", f"{key}={value}")]
+    words = [word for key, value in small.items() for word in ("--set", f"{key}={json.dumps(value)}")]  # TOML, here
     done = run_command("render", job, *words, "--quiet", "-o", tmp_path / "a.exr")
     assert done.returncode == 0, done.stderr
     image = mica.Job.load(job, set=small).render()
