@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <functional>
 #include <new>
 
 #include "host/app/exit_code.h"
@@ -40,9 +41,7 @@ void occupy_closed_streams() {
   std::abort();
 }
 
-}  // namespace
-
-int run_program(int argc, const char* const* argv, const MethodRegistry& methods) {
+int run_guarded(const std::function<int()>& run) {
   occupy_closed_streams();
   std::set_terminate(end_without_unwinding);
   try {
@@ -50,13 +49,23 @@ int run_program(int argc, const char* const* argv, const MethodRegistry& methods
     spdlog::set_error_handler([](const std::string&) {});  // a full log does not end the work
     spdlog::set_pattern("%^%l%$: %v");
     catch_interrupts();
-    return run_command(argc, argv, methods);
+    return run();
   } catch (const std::exception& error) {  // no memory, not even to say so as others are said
     std::fputs("mica: ", stderr);
     std::fputs(error.what(), stderr);
     std::fputs("\n", stderr);
     return static_cast<int>(ExitCode::device);
   }
+}
+
+}  // namespace
+
+int run_program(int argc, const char* const* argv) {
+  return run_guarded([&] { return run_command(argc, argv, MethodRegistry::builtin()); });
+}
+
+int run_program(int argc, const char* const* argv, const MethodRegistry& methods) {
+  return run_guarded([&] { return run_command(argc, argv, methods); });
 }
 
 }  // namespace mica::host::app

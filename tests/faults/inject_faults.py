@@ -100,7 +100,7 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("program", type=Path)
     parser.add_argument("library", type=Path)
-    parser.add_argument("--most", type=int, default=8)
+    parser.add_argument("--most", type=int, default=4)
     options = parser.parse_args()
     failures, runs = 0, 0
     with tempfile.TemporaryDirectory() as name:
