@@ -169,9 +169,11 @@ class BlockTracer {
   /// Whether a sample has weight in a pixel, of a part that is one: by subpixels from its first ones.
   bool is_seen(int down, int right) const {
     if (width_ != 1 || rows_.row_count != 1) return true;
-    const auto offset = margin_ * pixels_.subpixels;
-    return lattice_filter_.weights[static_cast<std::size_t>(down + offset)] > 0 &&
-           lattice_filter_.weights[static_cast<std::size_t>(right + offset)] > 0;
+    const auto counts = [&](int subpixel) {
+      return lattice_filter_.weights[static_cast<std::size_t>(subpixel)] > 0;
+    };
+    const int first = margin_ * pixels_.subpixels;
+    return counts(down + first) && counts(right + first);
   }
   bool is_sampled(int row, int column) const {
     return row >= first_seen_ && row < end_seen_ && column >= 0 && column < width_ && !has_fit(row, column);
