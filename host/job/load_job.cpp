@@ -105,7 +105,6 @@ void read_root(TableReader& table, Job& job) {
   for (MaterialDescription& material : job.scene.materials) give_tolerance(job, &material);
   table.read_table("audit", [&](TableReader& audit) {
     audit.read("samples", job.audit.samples, closed(0, 1e6));
-    job.audit.pixels = std::min(job.audit.samples, kAuditedPixels);
     audit.read("pixels", job.audit.pixels, closed(0, 4096));
   });
 }
