@@ -11,6 +11,7 @@
 #include <exception>
 #include <initializer_list>
 #include <memory>
+#include <new>
 #include <utility>
 
 #include "host/image/channel_choice.h"
@@ -365,6 +366,8 @@ auto with_file_errors(const std::string& path, const Function& function) {
   try {
     return function();
   } catch (const Error&) {
+    throw;
+  } catch (const std::bad_alloc&) {  // not the file's fault
     throw;
   } catch (const std::exception& error) {
     throw FileError(path + ": cannot read: " + reason(error.what()));
