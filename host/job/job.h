@@ -33,8 +33,6 @@ struct FrameSettings {
   double seconds(int frame) const { return frame / rate; }
 };
 
-constexpr int kAuditedPixels = 32;  ///< by default, where queries are audited
-
 struct AuditSettings {
   int samples = 0;  ///< queries of the job that the oracle re-evaluates
   int pixels = 0;   ///< of the picture that are integrated again
