@@ -122,12 +122,10 @@ void BuiltJob::calibrate(std::size_t n, Evaluator* evaluator) {
       queries.size(), [&](std::size_t k) { return queries[k]; }, scale);
   choices_[n].clear();
   for (const AutoChoice& choice : evaluator->choices())
-    choices_[n].push_back(fmt::format(
-        "surface {}: {} takes {} for footprints of about {:.3g} texels: relative L2 {:.2g}, at "
-        "most {:.2g} at 95% "
-        "confidence by {} of the job's queries; tolerance {}",
-        plan_.evaluators[n].surface, evaluator->name(), choice.evaluator, std::exp2(choice.kind.size),
-        choice.relative_l2, choice.upper_bound, choice.samples, job_.accuracy.tolerance));
+    choices_[n].push_back(
+        fmt::format("surface {}: {}: {} at 95% confidence by {} of the job's queries; tolerance {}",
+                    plan_.evaluators[n].surface, evaluator->name(), words(choice), choice.samples,
+                    job_.accuracy.tolerance));
 }
 
 std::vector<std::string> BuiltJob::notes() const {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "host/image/image.h"
-#include "tests/image/folder.h"
+#include "tests/image/picture_folder.h"
 
 namespace mica::host::conventions_test {
 namespace {
@@ -86,19 +86,10 @@ std::string dds(const std::string& code, const std::string& blocks, std::uint32_
   return bytes + blocks;
 }
 
-class Conventions : public FolderTest {
+class Conventions : public PictureFolderTest {
  protected:
   std::string write_bytes(const std::string& name, const std::string& bytes) const {
     std::ofstream(path(name), std::ios::binary) << bytes;
-    return path(name);
-  }
-  template <class Value>
-  std::string write(const std::string& name, ImageSpec spec, const std::vector<Value>& values) const {
-    spec.set_format(OIIO::BaseTypeFromC<Value>::value);
-    auto output = OIIO::ImageOutput::create(path(name));
-    EXPECT_TRUE(output && output->open(path(name), spec)) << name << OIIO::geterror();
-    EXPECT_TRUE(output->write_image(spec.format, values.data())) << output->geterror();
-    EXPECT_TRUE(output->close());
     return path(name);
   }
   static Floats map_pixels(const std::string& file) {
@@ -220,9 +211,7 @@ TEST_F(Conventions, VolumesDeepPixelsAndAnimationsAreRefused) {
       "an animation");
 }
 
-TEST_F(Conventions, Jpeg2000IsReadWhereItIsBuilt) {
-  const auto output = OIIO::ImageOutput::create(path("n.jp2"));
-  if (!output) GTEST_SKIP() << "OpenImageIO was built without JPEG 2000";
+TEST_F(Conventions, Jpeg2000IsRead) {
   std::vector<std::uint8_t> flat;
   for (int pixel = 0; pixel < 64 * 64; ++pixel) flat.insert(flat.end(), {200, 90, 220});
   const Floats found = map_pixels(write("n.jp2", ImageSpec(64, 64, 3), flat));

@@ -108,8 +108,8 @@ CellCount CellCounter::count(int first_i, int first_j, int size) {
   for (int j = first_j; j < std::min(first_j + size, surface_.height()); ++j)
     for (int i = first_i; i < std::min(first_i + size, surface_.width()); ++i) pieces.cut(i, j);
   std::sort(touched_.begin(), touched_.end());
-  std::vector<CellMoments> parts(
-      touched_.size());  // of which light cells need the weight and the mean normal
+  // To tell light cells takes the weight and the mean normal of each.
+  std::vector<CellMoments> parts(touched_.size());
   for (std::size_t n = 0; n < parts.size(); ++n) {
     Sum& sum = sums_[touched_[n]];
     parts[n].cell = touched_[n];
