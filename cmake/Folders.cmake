@@ -22,6 +22,9 @@ function(mica_folder folder)
   string(REPLACE / _ name mica_${folder})
   add_library(${name} OBJECT ${sources})
   set(batch 12)
+  if(folder MATCHES "^methods")
+    set(batch 6)  # who edits a method waits for its unit
+  endif()
   set_target_properties(${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${batch})
   # Types of an unnamed namespace have their linkage in the file that a unit includes as well as in the unit.
   target_compile_options(${name} PRIVATE -Wno-subobject-linkage)

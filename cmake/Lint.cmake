@@ -66,7 +66,7 @@ endforeach()
 lint_target(lint_kernels ${kernel_stamps})
 
 set(formatted)
-foreach(folder host include kernels samples tests bench tools)
+foreach(folder host include kernels samples tests bench tools python)
   foreach(ending cpp h cl)
     file(GLOB_RECURSE files CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/${folder}/*.${ending})
     list(APPEND formatted ${files})

@@ -69,7 +69,7 @@ int main(int argc, char** argv) {
   try {
     mica::Methods methods;
     methods.add(std::make_shared<PointsMethod>());
-    if (argc > 1) return mica::run_command(argc, argv, methods);
+    if (argc > 1) return mica::run_program(argc, argv, methods);
 
     const mica::NormalMap map = mica::NormalMap::generate("spectrum", {{"resolution", 256}});
     const mica::Evaluator points(mica::Device(), map, "points", {{"points", 4000}}, methods);

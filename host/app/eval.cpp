@@ -58,6 +58,7 @@ nlohmann::json summary(const EvalOptions& options, const EvalSubject& subject, c
   json["seconds"] = {
       {"load", times.load}, {"build", times.build}, {"evaluate", times.evaluate}, {"device", times.device}};
   json["queries"] = count;
+  json["replaced_answers"] = open.evaluator->replaced();
   json["queries_per_second"] = times.evaluate > 0 ? static_cast<double>(count) / times.evaluate : 0.0;
   json["output"] = options.output.file();
   return json;
@@ -114,6 +115,8 @@ int run(const EvalOptions& options) {
   times.device = open.evaluator->device_seconds();
 
   output.finish();
+  if (const std::size_t replaced = open.evaluator->replaced())
+    spdlog::warn("{} densities were not finite: the oracle answered in their place", replaced);
   spdlog::info("{} queries by {} on {} in {:.3g} s", rows.count(), open.evaluator->name(),
                open.device ? open.device->info().name : "the host", times.evaluate);
   if (!options.json.empty()) write_json(options.json, summary(options, subject, open, rows.count(), times));

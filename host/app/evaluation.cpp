@@ -26,11 +26,7 @@ OpenEvaluator open_evaluator(const Method& method, const MethodSettings& setting
 
 void log_choices(const OpenEvaluator& open) {
   for (const AutoChoice& choice : open.evaluator->choices())
-    spdlog::info(
-        "{}: footprints of about {:.3g} texels, roughness from {:.3g}: {}; relative L2 {:.2g}, at most "
-        "{:.2g}",
-        open.evaluator->name(), std::exp2(choice.kind.size), 0.02 * std::exp2(0.5 * choice.kind.roughness),
-        choice.evaluator, choice.relative_l2, choice.upper_bound);
+    spdlog::info("{}: {}", open.evaluator->name(), words(choice));
 }
 
 nlohmann::json describe_choices(const OpenEvaluator& open) {
@@ -38,6 +34,7 @@ nlohmann::json describe_choices(const OpenEvaluator& open) {
   for (const AutoChoice& choice : open.evaluator->choices())
     list.push_back({{"footprint_texels", std::exp2(choice.kind.size)},
                     {"roughness", 0.02 * std::exp2(0.5 * choice.kind.roughness)},
+                    {"first_order", choice.kind.first_order},
                     {"evaluator", choice.evaluator},
                     {"samples", choice.samples},
                     {"relative_l2", choice.relative_l2},

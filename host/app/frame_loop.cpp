@@ -60,7 +60,7 @@ bool is_finished(const FrameLoopSettings& settings, int frame, const std::string
 
 void FrameLoop::skip(int frame) {
   ++done_;
-  reports_.push_back(skipped_json(frame));
+  report([&] { return skipped_json(frame); });
   settings_.log.write("skipped", {{"frame", frame}});
   if (!settings_.quiet) say("frame {} is finished\n", frame);
 }
@@ -74,7 +74,7 @@ void FrameLoop::render(BuiltJob& built, int frame, const DeviceInfo& device) {
                         {{"frame", frame}, {"kind", word_of_kind(error.kind())}, {"message", error.what()}});
     if (!settings_.job.frames.given) throw;
     spdlog::error("frame {}: {}", frame, error.what());
-    reports_.push_back(failure_json(frame, error.what()));
+    report([&] { return failure_json(frame, error.what()); });
     failed_ = exit_code_of(error.kind());
   }
 }
@@ -125,7 +125,7 @@ void FrameLoop::write(int frame, const DeviceInfo& device, const RenderResult& r
                                    {"bytes", bytes_of(files)},
                                    {"seconds", result.seconds.total},
                                    {"audit", audit}});
-  reports_.push_back(render_json(job, device, result));
+  report([&] { return render_json(job, device, result); });
   if (settings_.quiet) return;
   say("{}", render_summary(device, result));
   say("wrote     {}\n", fmt::join(files, " and "));
@@ -133,9 +133,11 @@ void FrameLoop::write(int frame, const DeviceInfo& device, const RenderResult& r
 
 void FrameLoop::say_once(const std::vector<std::string>& notes, const std::vector<std::string>& warnings) {
   for (const std::string& note : notes)
-    if (said_.insert(note).second) spdlog::info("{}", note);
+    if (said_.count(note) == 0) spdlog::info("{}", note);
   for (const std::string& warning : warnings)
-    if (said_.insert(warning).second) spdlog::warn("{}", warning);
+    if (said_.count(warning) == 0) spdlog::warn("{}", warning);
+  said_ = {notes.begin(), notes.end()};
+  said_.insert(warnings.begin(), warnings.end());
 }
 
 }  // namespace mica::host::app

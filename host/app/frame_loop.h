@@ -19,6 +19,7 @@ struct FrameLoopSettings {
   const PictureShare& share;
   JsonLog& log;
   bool quiet = false;
+  bool keeps_reports = false;  ///< for `json`: a sequence may be long
 };
 
 /// Whether the files of a frame are whole and show what the job would have them show.
@@ -42,6 +43,12 @@ class FrameLoop {
  private:
   void render_and_write(BuiltJob& built, int frame, const DeviceInfo& device);
   void write(int frame, const DeviceInfo& device, const RenderResult& result);
+  template <typename Make>
+  void report(const Make& make) {
+    if (settings_.keeps_reports) reports_.push_back(make());
+  }
+
+  /// What was not said of the frame before.
   void say_once(const std::vector<std::string>& notes, const std::vector<std::string>& warnings);
 
   FrameLoopSettings settings_;

@@ -85,7 +85,7 @@ class RenderRun {
     const Outputs outputs(at_once, input_files(job),
                           targets.of_frames(job, {frames_.begin() + 1, frames_.end()}));
 
-    FrameLoop loop({job, targets.names, targets.share, log_, options_.quiet});
+    FrameLoop loop({job, targets.names, targets.share, log_, options_.quiet, !options_.json.empty()});
     const std::vector<int> wanted = skip_finished(job, targets, &loop);
     if (!wanted.empty()) render_frames(job, plan, wanted, &loop);
     if (!options_.json.empty()) write_file_atomically(options_.json, loop.json());

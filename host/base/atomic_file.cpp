@@ -63,11 +63,12 @@ class AtomicFile::Temporary {
  public:
   explicit Temporary(const std::string& target) : target_(target) {
     do {
+      if (leftover_) leftover_->keep();  // it is someone else's
       name_ = temporary_name(target, attempt_++);
+      leftover_.emplace(name_);  // before it is there: this may take memory that is not
       descriptor_ = open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     } while (descriptor_ < 0 && errno == EEXIST);
     if (descriptor_ < 0) fail(target_, "create", errno);
-    leftover_.emplace(name_);
   }
   ~Temporary() {
     if (descriptor_ >= 0) close(descriptor_);

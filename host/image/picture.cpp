@@ -11,6 +11,7 @@
 #include <exception>
 #include <initializer_list>
 #include <memory>
+#include <new>
 #include <utility>
 
 #include "host/image/channel_choice.h"
@@ -116,8 +117,9 @@ class PictureReader {
     for (int part = 1; has_parts && part < most_parts && input_->seek_subimage(part, 0); ++part)
       specs_.push_back(input_->spec());
     input_->geterror();  // that there are no more
-    if (format_.reader != "tiff" && !has_parts && input_->spec().get_int_attribute("oiio:subimages", 1) > 1)
-      fail("holds several pictures, as an animation does; expected one");
+    const bool is_sequence =
+        format_.reader != "tiff" && !has_parts && input_->spec().get_int_attribute("oiio:subimages", 1) > 1;
+    if (is_sequence || is_animated_webp()) fail("holds several pictures, as an animation does; expected one");
     std::vector<Chosen> fitting, all;
     for (int part = 0; part < static_cast<int>(specs_.size()); ++part) {
       const OIIO::ImageSpec& spec = specs_[static_cast<std::size_t>(part)];
@@ -140,6 +142,14 @@ class PictureReader {
     chosen_ = fitting.front();
     spec_ = specs_[static_cast<std::size_t>(chosen_.part)];
     note_choice();
+  }
+
+  /// OpenImageIO reads the first frame and says nothing of the others.
+  bool is_animated_webp() const {
+    constexpr std::size_t flags = 20;  // of the extended header
+    constexpr char animation = 2;
+    return format_.reader == "webp" && format_.first_bytes.compare(12, 4, "VP8X") == 0 &&
+           format_.first_bytes.size() > flags && (format_.first_bytes[flags] & animation) != 0;
   }
 
   static void keep_best(std::vector<Chosen>* sets) {
@@ -356,6 +366,8 @@ auto with_file_errors(const std::string& path, const Function& function) {
   try {
     return function();
   } catch (const Error&) {
+    throw;
+  } catch (const std::bad_alloc&) {  // not the file's fault
     throw;
   } catch (const std::exception& error) {
     throw FileError(path + ": cannot read: " + reason(error.what()));

@@ -35,6 +35,7 @@ struct FrameSettings {
 
 struct AuditSettings {
   int samples = 0;  ///< queries of the job that the oracle re-evaluates
+  int pixels = 0;   ///< of the picture that are integrated again
 };
 
 struct AccuracySettings {

@@ -103,8 +103,10 @@ void read_root(TableReader& table, Job& job) {
     accuracy.read("tolerance", job.accuracy.tolerance, closed(5e-4, 0.5));
   });
   for (MaterialDescription& material : job.scene.materials) give_tolerance(job, &material);
-  table.read_table("audit",
-                   [&](TableReader& audit) { audit.read("samples", job.audit.samples, closed(0, 1e6)); });
+  table.read_table("audit", [&](TableReader& audit) {
+    audit.read("samples", job.audit.samples, closed(0, 1e6));
+    audit.read("pixels", job.audit.pixels, closed(0, 4096));
+  });
 }
 
 }  // namespace

@@ -43,6 +43,8 @@ class Evaluator::Implementation {
                          [&](std::size_t done) { host::report(control, done, queries.count); });
   }
 
+  void estimate_errors(const Queries& queries, Span<const float> densities, Span<float> errors);
+
   void draw(const Footprints& footprints, const Column& roughness, const host::ImageWindow& window,
             Span<float> images, const RunControl& control);
 
@@ -61,6 +63,17 @@ class Evaluator::Implementation {
   std::unique_ptr<host::Evaluator> evaluator_;  // goes before what it stands on
   bool calibrated_ = false;
 };
+
+void Evaluator::Implementation::estimate_errors(const Queries& queries, Span<const float> densities,
+                                                Span<float> errors) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (!subject_.method().traits().estimates_errors)
+    throw UsageError(fmt::format("{} does not tell how far its answers may be off", evaluator_->name()));
+  host::check_columns(queries);
+  subject_.check(queries.count, [&](std::size_t n) { return host::to_query(queries, n); });
+  for (std::size_t n = 0; n < queries.count; ++n)
+    errors[n] = static_cast<float>(evaluator_->error_estimate(host::to_query(queries, n), densities[n]));
+}
 
 void Evaluator::Implementation::draw(const Footprints& footprints, const Column& roughness,
                                      const host::ImageWindow& window, Span<float> images,
@@ -108,6 +121,13 @@ std::vector<float> Evaluator::evaluate(const Queries& queries, const RunControl&
   return densities;
 }
 
+void Evaluator::estimate_errors(const Queries& queries, Span<const float> densities,
+                                Span<float> errors) const {
+  host::check_room(queries.count, densities, "densities");
+  host::check_room(queries.count, errors, "errors");
+  host::opened(implementation_).estimate_errors(queries, densities, errors);
+}
+
 void Evaluator::draw(const Footprints& footprints, const Column& roughness, const PndfWindow& window,
                      Span<float> images, const RunControl& control) const {
   if (window.pixels < 1 || window.pixels > 8192)
@@ -128,11 +148,7 @@ std::string Evaluator::method() const {
 std::vector<std::string> Evaluator::choices() const {
   std::vector<std::string> lines;
   for (const host::AutoChoice& choice : host::opened(implementation_).evaluator().choices())
-    lines.push_back(
-        fmt::format("footprints of about {:.3g} texels, roughness from {:.3g}: {}; relative L2 {:.2g}, at "
-                    "most {:.2g}",
-                    std::exp2(choice.kind.size), 0.02 * std::exp2(0.5 * choice.kind.roughness),
-                    choice.evaluator, choice.relative_l2, choice.upper_bound));
+    lines.push_back(host::words(choice));
   return lines;
 }
 

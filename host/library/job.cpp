@@ -28,6 +28,18 @@ std::vector<float> Image::channel(const std::string& name) const {
   return values;
 }
 
+namespace {
+
+host::ToneMap tone_map_of(const Image& image) {
+  const std::optional<host::ToneMap> found = host::parse_word<host::ToneMap>(image.tone_map);
+  if (!found)
+    throw UsageError(fmt::format("tone map \"{}\": expected {}", image.tone_map,
+                                 fmt::join(host::list_words<host::ToneMap>(), ", ")));
+  return *found;
+}
+
+}  // namespace
+
 void write(const Image& image, const std::string& path, double exposure_stops) {
   host::Image inside;
   inside.width = image.width, inside.height = image.height;
@@ -43,7 +55,7 @@ void write(const Image& image, const std::string& path, double exposure_stops) {
   if (ending == ".exr")
     host::write_exr(path, inside);
   else if (ending == ".png")
-    host::write_png(path, inside, exposure_stops);
+    host::write_png(path, inside, image.exposure_stops + exposure_stops, tone_map_of(image));
   else
     throw UsageError(fmt::format("{}: expected a file name that ends in .exr or .png", path));
 }
@@ -107,6 +119,7 @@ class Renderer::Implementation {
     image.width = result.image.width, image.height = result.image.height;
     image.channels = std::move(result.image.channels), image.pixels = std::move(result.image.pixels);
     image.metadata = std::move(result.image.metadata);
+    image.exposure_stops = job_->image.exposure, image.tone_map = host::word_of(job_->image.tone_map);
     image.notes = std::move(result.surface_notes);
     image.notes.insert(image.notes.end(), result.surface_warnings.begin(), result.surface_warnings.end());
     return image;

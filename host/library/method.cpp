@@ -90,8 +90,8 @@ class OutsideMethod : public Method {
   StructureSize structure(const StructureAsked& asked, const MethodSettings&) const override {
     return {0, method_->bytes(asked.width, asked.height), "none"};
   }
-  std::unique_ptr<Evaluator> make(Device*, const Surface* surface,
-                                  const MethodSettings& settings) const override {
+  std::unique_ptr<Evaluator> make_own(Device*, const Surface* surface,
+                                      const MethodSettings& settings) const override {
     if (!takes(surface->interpolation()))
       throw UsageError(fmt::format("{} does not take a surface of this interpolation", name()));
     const NormalMap map(std::make_shared<Surface>(*surface));  // the method may keep it
@@ -143,6 +143,12 @@ void Methods::add(std::shared_ptr<const Method> method) {
 
 std::vector<std::string> Methods::names() const {
   return implementation_->names([](const host::MethodTraits&) { return true; });
+}
+
+MethodInfo Methods::info(const std::string& name) const {
+  const host::Method& method = implementation_->get(name);
+  const host::MethodTraits traits = method.traits();
+  return {name, method.summary(), traits.map, traits.densities, traits.brdf, traits.keeps_tolerance};
 }
 
 std::vector<std::string> Methods::settings_of(const std::string& name) const {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "host/image/image_header.h"
 #include "host/job/read_surface.h"
 #include "host/surface/disk.h"
 #include "host/surface/surface.h"
@@ -74,6 +75,7 @@ void copy_to(const host::Surface& surface, Span<T> normals) {
 }  // namespace
 
 NormalMap NormalMap::load(const std::string& path, const Settings& settings) {
+  host::identify_image(path);  // a job calls a file that is missing a mistake of its own
   return make_map("file", path, settings);
 }
 
@@ -109,6 +111,12 @@ int NormalMap::height() const {
 
 Interpolation NormalMap::interpolation() const {
   return static_cast<Interpolation>(implementation()->interpolation());
+}
+
+Span<const double> NormalMap::normals() const {
+  static_assert(sizeof(Eigen::Vector2d) == 2 * sizeof(double), "normals are plain numbers");
+  const std::vector<Eigen::Vector2d>& normals = implementation()->normals();
+  return {normals.front().data(), 2 * normals.size()};
 }
 
 void NormalMap::copy_normals(Span<float> normals) const {

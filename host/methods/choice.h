@@ -2,16 +2,20 @@
 
 #include <cstddef>
 #include <string>
+#include <tuple>
 
 namespace mica::host {
 
-/// Queries that are alike: footprints of one octave, roughnesses of half an octave.
+/// Queries that are alike: footprints of one octave, roughnesses of half an octave. Of one with a first
+/// order, the footprint is the place that its half vector picks, and the roughness that of its lobe where it
+/// is narrow.
 struct QueryClass {
-  int size = 0;       ///< floor of log2 of sqrt(2) times the smaller standard deviation in texels
-  int roughness = 0;  ///< floor of 2 log2 (roughness / 0.02)
+  int size = 0;              ///< floor of log2 of sqrt(2) times the smaller standard deviation in texels
+  int roughness = 0;         ///< floor of 2 log2 (roughness / 0.02)
+  bool first_order = false;  ///< the half vector turns, or the lobe is not round
 
   friend bool operator<(const QueryClass& a, const QueryClass& b) {
-    return a.size != b.size ? a.size < b.size : a.roughness < b.roughness;
+    return std::tie(a.size, a.roughness, a.first_order) < std::tie(b.size, b.roughness, b.first_order);
   }
 };
 
@@ -25,5 +29,8 @@ struct AutoChoice {
   double typical_density = 0;  ///< sum of squares of the samples' densities over their sum
   double cost = 0;             ///< ns of one core that a query is estimated to take
 };
+
+/// "footprints of about 4 texels, roughness from 0.02: triangles; relative L2 0, at most 0.0001"
+std::string words(const AutoChoice& choice);
 
 }  // namespace mica::host

@@ -68,6 +68,9 @@ class Evaluator {
     return std::numeric_limits<double>::infinity();
   }
 
+  /// Answers so far that were not finite, and were replaced by the oracle's; see with_finite_answers.
+  virtual std::size_t replaced() const { return 0; }
+
   virtual std::string name() const = 0;
   virtual std::size_t device_bytes() const = 0;  ///< of its structures, without batches
   virtual double build_seconds() const = 0;      ///< that its structures took on the host

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "host/methods/evaluator.h"
+#include "host/methods/finite_evaluator.h"
 #include "host/methods/map/map_query.h"
 #include "host/methods/patch_brdf.h"
 #include "host/methods/standard.h"
@@ -24,7 +25,12 @@ bool Method::share(const MethodSettings& a, const MethodSettings& b, bool) const
   return describe(a) == describe(b);
 }
 
-std::unique_ptr<Evaluator> Method::make(Device*, const Surface*, const MethodSettings&) const {
+std::unique_ptr<Evaluator> Method::make(Device* device, const Surface* surface,
+                                        const MethodSettings& settings) const {
+  return with_finite_answers(make_own(device, surface, settings), surface);
+}
+
+std::unique_ptr<Evaluator> Method::make_own(Device*, const Surface*, const MethodSettings&) const {
   refuse_densities();
 }
 

@@ -86,11 +86,12 @@ class Method {
   /// Whether its BRDF never scatters more than it receives.
   virtual bool conserves_energy(const MethodSettings&) const { return true; }
 
+  /// Answers that are not finite are replaced by the oracle's, and counted: Evaluator::replaced.
   /// @param device, surface have to outlive what is made; null where the traits say that it needs none.
   /// Throws UsageError where the method has no such thing, and for a surface or settings that it does not
   /// take.
-  virtual std::unique_ptr<Evaluator> make(Device* device, const Surface* surface,
-                                          const MethodSettings& settings) const;
+  std::unique_ptr<Evaluator> make(Device* device, const Surface* surface,
+                                  const MethodSettings& settings) const;
   virtual std::unique_ptr<PatchBrdf> make_brdf(Device* device, const Surface* surface,
                                                const MethodSettings& settings) const;
 
@@ -115,6 +116,9 @@ class Method {
  protected:
   /// The same but for what the traits exclude already.
   virtual std::string own_query_problem(const Query& query, const Surface* surface) const;
+  /// `make`, with answers as they come.
+  virtual std::unique_ptr<Evaluator> make_own(Device* device, const Surface* surface,
+                                              const MethodSettings& settings) const;
   [[noreturn]] void refuse_brdf() const;
   [[noreturn]] void refuse_densities() const;
 };

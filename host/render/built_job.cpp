@@ -8,6 +8,7 @@
 #include "host/base/stopwatch.h"
 #include "host/job/input_files.h"
 #include "host/methods/ndf_brdf.h"
+#include "host/methods/triangles/triangle_evaluator.h"
 #include "host/scene/keyframes.h"
 #include "host/surface/in_time.h"
 
@@ -17,6 +18,8 @@ namespace {
 constexpr double kResidualOfTolerance =
     150;                              // measured: FitLimits::residual of 1.5 keeps a relative L2 of 1%
 constexpr double kUnusedAlpha = 0.1;  // of materials that no shape has
+constexpr double kGoldenRatio =
+    0.6180339887498949;  // whose multiples, less whole numbers, fill [0, 1) evenly
 
 /// Beckmann roughness of a map as a whole, for Smith's G: slopes of variance alpha^2 / 2 an axis, and the
 /// roughness.
@@ -25,6 +28,12 @@ double masking_alpha(const Surface& surface, double roughness) {
   for (const Eigen::Vector2d& s : surface.normals()) sum += s.squaredNorm() / (1 - s.squaredNorm());
   const double slope_variance = sum / static_cast<double>(surface.normals().size());
   return std::sqrt(slope_variance + 2 * roughness * roughness);
+}
+
+/// Several materials may share a surface, whose lines are said once.
+void append_new(const std::vector<std::string>& lines, std::vector<std::string>* all) {
+  for (const std::string& line : lines)
+    if (std::find(all->begin(), all->end(), line) == all->end()) all->push_back(line);
 }
 
 /// E[(dn/du)' dn/du] over a map, per uv^2, from the differences of its texels.
@@ -41,27 +50,22 @@ Eigen::Matrix2d normal_change(const Surface& surface) {
   return size.asDiagonal() * (sum / (size.x() * size.y())) * size.asDiagonal();
 }
 
-/// Whether a method of the plan looks at the job's queries to choose among others.
-bool chooses(const Job& job, const Plan& plan) {
-  return std::any_of(plan.evaluators.begin(), plan.evaluators.end(), [&](const PlannedEvaluator& planned) {
-    return method_of(job, planned).traits().chooses;
-  });
-}
-
 }  // namespace
 
-BuiltJob::BuiltJob(const Job& job, const Plan& plan, Device& device, std::optional<int> frame)
+BuiltJob::BuiltJob(const Job& job, const Plan& plan, Device& device)
+    : BuiltJob(job, plan, device, job.frames.first) {}
+
+BuiltJob::BuiltJob(const Job& job, const Plan& plan, Device& device, int frame)
     : job_(job),
       plan_(plan),
       device_(device),
-      frame_(chooses(job, plan) ? job.frames.first : frame.value_or(job.frames.first)),
+      frame_(frame),
       inputs_(hash_of_inputs(job)),
+      surface_findings_(plan.evaluators.size()),
+      choices_(plan.evaluators.size()),
       surfaces_(make_surfaces()),
       scene_(make_scene()) {
   const Stopwatch watch;
-  const Findings& of_scene = scene_.findings();
-  notes_.insert(notes_.end(), of_scene.notes.begin(), of_scene.notes.end());
-  warnings_.insert(warnings_.end(), of_scene.warnings.begin(), of_scene.warnings.end());
   evaluators_.resize(surfaces_.size());
   brdfs_.resize(surfaces_.size());
   for (std::size_t n = 0; n < surfaces_.size(); ++n) build_evaluator(n);
@@ -71,6 +75,7 @@ BuiltJob::BuiltJob(const Job& job, const Plan& plan, Device& device, std::option
 void BuiltJob::build_evaluator(std::size_t n) {
   const PlannedEvaluator& planned = plan_.evaluators[n];
   past_device_seconds_ += device_seconds_of(n);
+  if (evaluators_[n]) past_replaced_answers_ += evaluators_[n]->replaced();
   brdfs_[n].reset();  // buffers go before the new ones come
   evaluators_[n].reset();
   if (planned.asks_densities) evaluators_[n] = make_density_evaluator(n);
@@ -94,57 +99,85 @@ std::unique_ptr<Evaluator> BuiltJob::make_density_evaluator(std::size_t n) {
   return evaluator;
 }
 
-/// A method that chooses among others looks at the queries of some rows of the image.
+/// A method that chooses among others looks at the queries of some rows of the image: of all the job's
+/// frames, so that a frame is the same whichever others are rendered; of this frame where the surface is
+/// another in each.
 void BuiltJob::calibrate(std::size_t n, Evaluator* evaluator) {
   constexpr int most_rows = 24;
-  const int height = job_.image.height, rows = std::min(height, most_rows);
-  std::vector<Query> queries;
-  for (int row = 0; row < rows; ++row)
-    for (const GlintQuery& glint : scene_.trace((2 * row + 1) * height / (2 * rows), 1).queries)
-      if (plan_.evaluator_of_material[glint.material] == static_cast<int>(n)) queries.push_back(glint.query);
   const bool for_one_frame = moves(job_.surfaces[plan_.evaluators[n].surface_index]);
-  double scale = static_cast<double>(height) / rows;
-  if (!for_one_frame) scale *= job_.frames.last - job_.frames.first + 1;
+  const int height = job_.image.height, first = for_one_frame ? frame_ : job_.frames.first,
+            frames = for_one_frame ? 1 : job_.frames.last - job_.frames.first + 1,
+            views = std::min(frames, most_rows), rows = std::min(height, (most_rows + views - 1) / views);
+  std::vector<Query> queries;
+  for (int view = 0; view < views; ++view) {
+    const auto frame = first + static_cast<int>((2LL * view + 1) * frames / (2 * views));
+    const Scene scene = scene_at(frame);
+    const double shift = std::fmod(0.5 + kGoldenRatio * view, 1.0);  // other rows in every view
+    for (int row = 0; row < rows; ++row)
+      for (const GlintQuery& glint : scene.trace(static_cast<int>((row + shift) * height / rows), 1).queries)
+        if (plan_.evaluator_of_material[glint.material] == static_cast<int>(n))
+          queries.push_back(glint.query);
+  }
+  double scale = static_cast<double>(height) * frames / (static_cast<double>(rows) * views);
   if (plan_.gathers_light) scale *= 1 + job_.image.samples;
   evaluator->calibrate(
       queries.size(), [&](std::size_t k) { return queries[k]; }, scale);
+  choices_[n].clear();
   for (const AutoChoice& choice : evaluator->choices())
-    notes_.push_back(fmt::format(
-        "surface {}: {} takes {} for footprints of about {:.3g} texels: relative L2 {:.2g}, at "
-        "most {:.2g} at 95% "
-        "confidence by {} of the job's queries; tolerance {}",
-        plan_.evaluators[n].surface, evaluator->name(), choice.evaluator, std::exp2(choice.kind.size),
-        choice.relative_l2, choice.upper_bound, choice.samples, job_.accuracy.tolerance));
+    choices_[n].push_back(
+        fmt::format("surface {}: {}: {} at 95% confidence by {} of the job's queries; tolerance {}",
+                    plan_.evaluators[n].surface, evaluator->name(), words(choice), choice.samples,
+                    job_.accuracy.tolerance));
+}
+
+std::vector<std::string> BuiltJob::notes() const {
+  std::vector<std::string> all;
+  for (const Findings& findings : surface_findings_) append_new(findings.notes, &all);
+  append_new(scene_.findings().notes, &all);
+  for (const std::vector<std::string>& choices : choices_) append_new(choices, &all);
+  return all;
+}
+
+std::vector<std::string> BuiltJob::warnings() const {
+  std::vector<std::string> all;
+  for (const Findings& findings : surface_findings_) append_new(findings.warnings, &all);
+  append_new(scene_.findings().warnings, &all);
+  return all;
+}
+
+Scene BuiltJob::scene_at(int frame) const {
+  return scene_.with_view(camera_at(job_.scene, frame), lights_at(job_.scene, frame), masking_alphas(),
+                          pixels());
 }
 
 void BuiltJob::go_to(int frame) {
   frame_ = frame;
   surface_seconds_ = scene_seconds_ = build_seconds_ = 0;
+  std::vector<std::size_t> changed;
   for (std::size_t n = 0; n < surfaces_.size(); ++n) {
     if (!surfaces_[n] || !moves(job_.surfaces[plan_.evaluators[n].surface_index])) continue;
     const Stopwatch making;
     surfaces_[n] = make_surface_of(n, frame);
     surface_seconds_ += making.seconds();
-    const Stopwatch building;
-    build_evaluator(n);
-    build_seconds_ += building.seconds();
+    changed.push_back(n);
   }
   const Stopwatch moving;
-  scene_ = scene_.with_view(camera_at(job_.scene, frame), lights_at(job_.scene, frame), masking_alphas(),
-                            pixels());
+  scene_ = scene_at(frame);
   scene_seconds_ = moving.seconds();
+  const Stopwatch building;
+  for (const std::size_t n : changed) build_evaluator(n);
+  build_seconds_ = building.seconds();
 }
 
 Surface BuiltJob::make_surface_of(std::size_t n, int frame) {
   const SurfaceDescription& description = job_.surfaces[plan_.evaluators[n].surface_index];
   SurfaceReport report;
   Surface surface = make_surface(after(description, job_.frames.seconds(frame)), &report);
-  const auto add = [&](const std::string& text, std::vector<std::string>* texts) {
-    const std::string line = fmt::format("surface {}: {}", description.name, text);
-    if (std::find(texts->begin(), texts->end(), line) == texts->end()) texts->push_back(line);
+  const auto named = [&](std::vector<std::string> texts) {
+    for (std::string& text : texts) text = fmt::format("surface {}: {}", description.name, text);
+    return texts;
   };
-  for (const std::string& note : report.notes) add(note, &notes_);
-  for (const std::string& warning : report.warnings) add(warning, &warnings_);
+  surface_findings_[n] = {named(report.notes), named(report.warnings)};
   return surface;
 }
 
@@ -238,7 +271,27 @@ double BuiltJob::device_seconds() const {
   return seconds;
 }
 
+std::vector<Evaluator*> BuiltJob::evaluators() const {
+  std::vector<Evaluator*> pointers;
+  for (const std::unique_ptr<Evaluator>& evaluator : evaluators_) pointers.push_back(evaluator.get());
+  return pointers;
+}
+
+std::unique_ptr<Evaluator> BuiltJob::make_exact_evaluator(std::size_t n) const {
+  return surface(n) ? std::make_unique<TriangleEvaluator>(device_, *surface(n)) : nullptr;
+}
+
+std::size_t BuiltJob::replaced_answers() const {
+  std::size_t count = past_replaced_answers_;
+  for (const std::unique_ptr<Evaluator>& evaluator : evaluators_)
+    if (evaluator) count += evaluator->replaced();
+  return count;
+}
+
 PendingBlock::PendingBlock(TracedRows rows, const BuiltJob& built)
+    : PendingBlock(std::move(rows), built, built.evaluators()) {}
+
+PendingBlock::PendingBlock(TracedRows rows, const BuiltJob& built, const std::vector<Evaluator*>& evaluators)
     : rows_(std::move(rows)), parts_(built.plan().evaluators.size()) {
   std::vector<std::vector<Query>> queries(parts_.size());
   for (std::size_t n = 0; n < rows_.queries.size(); ++n) {
@@ -248,23 +301,22 @@ PendingBlock::PendingBlock(TracedRows rows, const BuiltJob& built)
   }
   for (std::size_t n = 0; n < parts_.size(); ++n) {
     if (queries[n].empty()) continue;
-    if (built.job()
-            .scene.materials[static_cast<std::size_t>(built.plan().evaluators[n].first_material)]
-            .glints)
-      start_glints(&parts_[n], built, n, queries[n]);
+    const auto material = static_cast<std::size_t>(built.plan().evaluators[n].first_material);
+    const std::optional<GlintsDescription>& glints = built.job().scene.materials[material].glints;
+    if (glints)
+      start_glints(&parts_[n], evaluators[n], glints->colors, queries[n]);
     else
-      parts_[n].pending = built.evaluator(n).start(queries[n]);
+      parts_[n].pending = evaluators[n]->start(queries[n]);
   }
 }
 
-void PendingBlock::start_glints(Part* part, const BuiltJob& built, std::size_t evaluator,
+void PendingBlock::start_glints(Part* part, Evaluator* evaluator, const std::vector<Color>& colors,
                                 const std::vector<Query>& queries) {
   std::vector<GlintPoint> points;
   points.reserve(queries.size());
   for (const std::size_t place : part->places) points.push_back(rows_.queries[place].glints);
-  part->pending = built.evaluator(evaluator).start_at(queries, points);
-  const auto material = static_cast<std::size_t>(built.plan().evaluators[evaluator].first_material);
-  part->colors = built.job().scene.materials[material].glints->colors;
+  part->pending = evaluator->start_at(queries, points);
+  part->colors = colors;
 }
 
 /// The mean colour of a query's glints goes into its weight.

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "host/base/findings.h"
 #include "host/device/device.h"
 #include "host/job/job.h"
 #include "host/methods/evaluator.h"
@@ -18,9 +19,10 @@ namespace mica::host {
 /// Everything that a plan names, built: surfaces, scene, and evaluators on the device; at one frame.
 class BuiltJob {
  public:
-  /// At `frame`, or at the job's first one where a method chooses among others: what it chooses does not
-  /// depend on the frames that are wanted. The first three must outlive it. Throws mica::Error.
-  BuiltJob(const Job& job, const Plan& plan, Device& device, std::optional<int> frame = {});
+  /// At the job's first frame, or another of its frames. Job, plan and device must outlive it. Throws
+  /// mica::Error.
+  BuiltJob(const Job& job, const Plan& plan, Device& device);
+  BuiltJob(const Job& job, const Plan& plan, Device& device, int frame);
 
   /// Goes on to another frame: camera and lights move, surfaces that change are made again, and nothing else.
   void go_to(int frame);
@@ -31,9 +33,12 @@ class BuiltJob {
   const Scene& scene() const { return scene_; }
   /// By PlannedEvaluator; only one that asks for densities.
   Evaluator& evaluator(std::size_t n) const { return *evaluators_[n]; }
+  std::vector<Evaluator*> evaluators() const;  ///< likewise; null for the others
   /// By PlannedEvaluator; of one that is a patch BRDF, and of all when light is gathered.
   PatchBrdf& brdf(std::size_t n) const { return *brdfs_[n]; }
   std::vector<const Surface*> surfaces() const;  ///< by PlannedEvaluator; null without a map
+  /// One as exact as there is: `triangles` on its map; null without a map.
+  std::unique_ptr<Evaluator> make_exact_evaluator(std::size_t n) const;
 
   // Seconds that the latest frame took to build.
   double surface_seconds() const { return surface_seconds_; }
@@ -42,13 +47,16 @@ class BuiltJob {
   std::size_t device_bytes() const;  ///< of all structures, as allocated
   double device_seconds() const;     ///< that kernels ran so far, by the device's clock
 
-  const std::string& inputs() const { return inputs_; }                   ///< hash_of_inputs of the job
-  const std::vector<std::string>& notes() const { return notes_; }        ///< of surfaces and images
-  const std::vector<std::string>& warnings() const { return warnings_; }  ///< of surfaces and images
+  std::size_t replaced_answers() const;  ///< so far; see Evaluator::replaced
+
+  const std::string& inputs() const { return inputs_; }  ///< hash_of_inputs of the job
+  std::vector<std::string> notes() const;                ///< of surfaces and images
+  std::vector<std::string> warnings() const;             ///< of surfaces and images
 
  private:
   Surface make_surface_of(std::size_t n, int frame);
   void build_evaluator(std::size_t n);
+  Scene scene_at(int frame) const;
   std::vector<std::optional<Surface>> make_surfaces();
   std::vector<double> masking_alphas() const;
   LightGathering gathering() const;
@@ -67,8 +75,11 @@ class BuiltJob {
   double surface_seconds_ = 0, scene_seconds_ = 0, build_seconds_ = 0;
   std::string inputs_;
   double past_device_seconds_ = 0;  // of evaluators that are no more
-  std::vector<std::string> notes_, warnings_;
-  std::vector<std::optional<Surface>> surfaces_;  // by PlannedEvaluator
+  std::size_t past_replaced_answers_ = 0;
+  // By PlannedEvaluator: what was found of the surface, what its method chose, and the surface.
+  std::vector<Findings> surface_findings_;
+  std::vector<std::vector<std::string>> choices_;
+  std::vector<std::optional<Surface>> surfaces_;
   Scene scene_;
   std::vector<std::unique_ptr<Evaluator>> evaluators_;
   std::vector<std::unique_ptr<PatchBrdf>> brdfs_;
@@ -78,6 +89,8 @@ class BuiltJob {
 class PendingBlock {
  public:
   PendingBlock(TracedRows rows, const BuiltJob& built);
+  /// @param evaluators by PlannedEvaluator, to be asked in place of the job's own.
+  PendingBlock(TracedRows rows, const BuiltJob& built, const std::vector<Evaluator*>& evaluators);
 
   /// Once waited for, the weights of glints are tinted by their colours.
   const TracedRows& rows() const { return rows_; }
@@ -90,7 +103,7 @@ class PendingBlock {
     std::unique_ptr<PendingDensities> pending;
     std::vector<Eigen::Vector3d> colors;  ///< that glints have
   };
-  void start_glints(Part* part, const BuiltJob& built, std::size_t evaluator,
+  void start_glints(Part* part, Evaluator* evaluator, const std::vector<Color>& colors,
                     const std::vector<Query>& queries);
   void tint(const Part& part, const std::vector<float>& densities);
 

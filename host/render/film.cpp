@@ -1,10 +1,48 @@
 #include "host/render/film.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "host/scene/aovs.h"
 
 namespace mica::host {
+
+namespace {
+
+void blacken_what_is_not_finite(std::vector<Eigen::Vector3d>* light, FilmRepairs* repairs) {
+  constexpr double largest = std::numeric_limits<float>::max();
+  for (Eigen::Vector3d& color : *light) {
+    if (color.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= largest) continue;
+    color.setZero();
+    ++repairs->not_finite;
+  }
+}
+
+}  // namespace
+
+std::vector<Eigen::Vector3d> radiance_of(const TracedRows& rows, const std::vector<float>& densities,
+                                         FilmRepairs* repairs) {
+  std::vector<Eigen::Vector3d> radiance(rows.radiance.size()), sample_radiance(rows.sample_radiance.size());
+  for (std::size_t pixel = 0; pixel < radiance.size(); ++pixel)
+    radiance[pixel] = rows.radiance[pixel].cast<double>();
+  for (std::size_t n = 0; n < sample_radiance.size(); ++n)
+    sample_radiance[n] = rows.sample_radiance[n].cast<double>();
+  for (std::size_t n = 0; n < densities.size(); ++n) {
+    const GlintQuery& glint = rows.queries[n];
+    (glint.sample == GlintQuery::kNone ? radiance[glint.pixel] : sample_radiance[glint.sample]) +=
+        glint.weight.cast<double>() * static_cast<double>(densities[n]);
+  }
+  blacken_what_is_not_finite(&sample_radiance, repairs);  // before neighbouring pixels share them
+  add_samples(rows, sample_radiance, &radiance);
+  blacken_what_is_not_finite(&radiance, repairs);
+  for (Eigen::Vector3d& color : radiance) {
+    if (color.minCoeff() >= 0) continue;
+    color = color.cwiseMax(0);
+    ++repairs->negative;
+  }
+  return radiance;
+}
 
 Film::Film(int width, int height, const std::vector<std::string>& channels, int first_row) {
   image_.width = width;
@@ -29,20 +67,14 @@ void Film::add(const TracedRows& rows, const std::vector<float>& densities,
   const std::size_t first_pixel = static_cast<std::size_t>(rows.first_row - image_.first_row) * image_.width;
   const std::size_t pixels = static_cast<std::size_t>(rows.row_count) * image_.width;
 
-  std::vector<Eigen::Vector3d> radiance(pixels), sample_radiance(rows.sample_radiance.size());
+  const std::vector<Eigen::Vector3d> radiance = radiance_of(rows, densities, &repairs_);
   std::vector<double> density_sum(pixels, 0.0), error_sum(pixels, 0.0);
-  for (std::size_t pixel = 0; pixel < pixels; ++pixel) radiance[pixel] = rows.radiance[pixel].cast<double>();
-  for (std::size_t n = 0; n < sample_radiance.size(); ++n)
-    sample_radiance[n] = rows.sample_radiance[n].cast<double>();
   for (std::size_t n = 0; n < densities.size(); ++n) {
     const GlintQuery& glint = rows.queries[n];
-    (glint.sample == GlintQuery::kNone ? radiance[glint.pixel] : sample_radiance[glint.sample]) +=
-        glint.weight.cast<double>() * static_cast<double>(densities[n]);
     if (glint.pixel == GlintQuery::kNone) continue;
     density_sum[glint.pixel] += densities[n];
     if (!errors.empty()) error_sum[glint.pixel] += errors[n];
   }
-  add_samples(rows, sample_radiance, &radiance);
 
   write(first_pixel, "R", pixels, [&](std::size_t pixel, float* out) {
     Eigen::Map<Eigen::Vector3f>{out} = radiance[pixel].cast<float>();
@@ -50,6 +82,8 @@ void Film::add(const TracedRows& rows, const std::vector<float>& densities,
   for (const Aov& aov : aovs())
     write(first_pixel, aov.channel(0), pixels, [&](std::size_t pixel, float* out) {
       aov.write({rows, pixel, density_sum[pixel], error_sum[pixel]}, out);
+      for (std::size_t part = 0; part < aov.parts.size(); ++part)
+        if (!std::isfinite(out[part])) out[part] = 0, ++repairs_.not_finite;
     });
 }
 

@@ -14,6 +14,7 @@ namespace mica::host {
 namespace {
 
 constexpr char kAudit[] = "mica:audit", kDevice[] = "mica:device";
+constexpr char kPictureAudit[] = "mica:audit.picture", kPixels[] = "mica:audit_pixels";
 constexpr char kSamples[] = "mica:audit_samples", kExposure[] = "mica:exposure", kToneMap[] = "mica:tone_map";
 
 template <typename To, typename From>
@@ -44,8 +45,32 @@ std::size_t read_samples(const std::string& text, std::vector<AuditedSample>* sa
   return most;
 }
 
+/// The audited pixels of these rows: subpixels, the reference's L2, and what was shown and expected of each.
+std::string write_pixels(const AuditedPixels& pixels) {
+  std::string text = fmt::format("{} {:x}", pixels.subpixels, same_bits<std::uint64_t>(pixels.reference_l2));
+  for (std::size_t n = 0; n < pixels.shown.size(); ++n)
+    text += fmt::format(" {:x} {:x}", same_bits<std::uint32_t>(pixels.shown[n]),
+                        same_bits<std::uint32_t>(pixels.expected[n]));
+  return text;
+}
+
+/// Adds those of a part.
+void read_pixels(const std::string& text, AuditedPixels* pixels) {
+  std::istringstream words(text);
+  int subpixels = 0;
+  std::uint64_t reference_l2 = 0;
+  words >> subpixels >> std::hex >> reference_l2;
+  pixels->subpixels = std::max(pixels->subpixels, subpixels);
+  pixels->reference_l2 = std::max(pixels->reference_l2, same_bits<double>(reference_l2));
+  std::uint32_t expected = 0;
+  for (std::uint32_t shown = 0; words >> shown >> expected;) {
+    pixels->shown.push_back(same_bits<float>(shown));
+    pixels->expected.push_back(same_bits<float>(expected));
+  }
+}
+
 bool is_part(const Image& image) {
-  for (const char* name : {kSamples, kExposure, kToneMap})
+  for (const char* name : {kSamples, kPixels, kExposure, kToneMap})
     if (!image.metadata.count(name)) return false;
   return true;
 }
@@ -53,7 +78,7 @@ bool is_part(const Image& image) {
 /// Attributes that all parts of a picture have in common.
 std::map<std::string, std::string> identity(const PicturePart& part) {
   std::map<std::string, std::string> identity = part.image.metadata;
-  identity.erase(kDevice), identity.erase(kSamples);
+  for (const char* name : {kDevice, kSamples, kPixels}) identity.erase(name);
   identity["size"] = fmt::format("{} x {}", part.image.width, part.image.whole_height);
   identity["channels"] = fmt::format("{}", fmt::join(part.image.channels, " "));
   return identity;
@@ -133,8 +158,9 @@ void check(std::vector<PicturePart>* parts) {
 
 void make_part(const Job& job, RenderResult* result) {
   std::map<std::string, std::string>& metadata = result->image.metadata;
-  metadata.erase(kAudit);
+  metadata.erase(kAudit), metadata.erase(kPictureAudit);
   metadata[kSamples] = write_samples(job.audit.samples, result->audited);
+  metadata[kPixels] = write_pixels(result->audited_pixels);
   metadata[kExposure] = fmt::format("{}", job.image.exposure);
   metadata[kToneMap] = word_of(job.image.tone_map);
 }
@@ -144,11 +170,13 @@ JoinedPicture join(std::vector<PicturePart> parts) {
   JoinedPicture joined;
   Image& whole = joined.image;
   std::vector<AuditedSample> samples;
+  AuditedPixels pixels;
   std::size_t most = 0;
   std::set<std::string> devices;
   for (const PicturePart& part : parts) {
     whole.pixels.insert(whole.pixels.end(), part.image.pixels.begin(), part.image.pixels.end());
     most = read_samples(part.image.metadata.at(kSamples), &samples);
+    read_pixels(part.image.metadata.at(kPixels), &pixels);
     if (const auto device = part.image.metadata.find(kDevice); device != part.image.metadata.end())
       devices.insert(device->second);
   }
@@ -157,12 +185,14 @@ JoinedPicture join(std::vector<PicturePart> parts) {
   whole.channels = first.channels, whole.metadata = first.metadata;
   joined.exposure = std::stod(whole.metadata.at(kExposure));
   joined.tone_map = parse_word<ToneMap>(whole.metadata.at(kToneMap)).value_or(ToneMap::shoulder);
-  for (const char* name : {kSamples, kExposure, kToneMap}) whole.metadata.erase(name);
+  for (const char* name : {kSamples, kPixels, kExposure, kToneMap}) whole.metadata.erase(name);
   whole.metadata[kDevice] = fmt::format("{}", fmt::join(devices, "; "));
   std::sort(samples.begin(), samples.end(),
             [](const AuditedSample& a, const AuditedSample& b) { return a.key < b.key; });
   samples.resize(std::min(samples.size(), most));
   if (!samples.empty()) whole.metadata[kAudit] = describe(audit_result(samples));
+  if (const PictureAudit audit = picture_audit(pixels); audit.pixels)
+    whole.metadata[kPictureAudit] = describe(audit);
   return joined;
 }
 

@@ -8,7 +8,8 @@
 namespace mica::host {
 
 /// Makes the image of some rows, as rendered, one that can be joined: its attributes carry what the whole
-/// will need, the audited samples and how the preview is shown, in place of the audit of these rows alone.
+/// will need, the audited samples and pixels and how the preview is shown, in place of the audit of these
+/// rows alone.
 void make_part(const Job& job, RenderResult* result);
 
 /// A part that was read with read_stored_picture.

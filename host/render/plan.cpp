@@ -116,6 +116,11 @@ std::vector<std::string> missing_densities(const Job& job, const Plan& plan) {
 
 }  // namespace
 
+bool can_audit_pixels(const Plan& plan) {
+  return !plan.gathers_light && std::none_of(plan.evaluators.begin(), plan.evaluators.end(),
+                                             [](const PlannedEvaluator& e) { return e.patch_brdf; });
+}
+
 const Method& method_of(const Job& job, const PlannedEvaluator& planned) {
   return job.methods.get(planned.evaluator);
 }
@@ -140,6 +145,8 @@ Plan make_plan(const Job& job) {
   plan.channels = channels_of(job.image.aovs);
   check_estimates(job, plan);
   plan.warnings = missing_densities(job, plan);
+  if (job.audit.pixels > 0 && plan.gathers_light)
+    plan.warnings.emplace_back("[audit] draws no pixels where light is gathered from all around");
   plan.queries_a_batch = kQueriesABatch;
   const std::size_t queries_a_row = static_cast<std::size_t>(job.image.width) * job.image.subpixels *
                                     job.image.subpixels * std::max<std::size_t>(job.scene.lights.size(), 1);

@@ -47,6 +47,10 @@ struct Plan {
 /// Derives the plan from the job; map files are opened for their size only. Throws FileError.
 Plan make_plan(const Job& job);
 
+/// Whether pixels can be integrated again: not where light is gathered by sampling, whose noise would be all
+/// that is seen, nor where lamps are multiplied with the BRDF of a patch, which has no limit of small ones.
+bool can_audit_pixels(const Plan& plan);
+
 /// The plan in words, a line an item.
 std::string describe(const Plan& plan);
 

@@ -76,7 +76,20 @@ void render_rows(const BuiltJob& built, const RowRange& rows, const RenderProgre
   }
   result->image = film.take();
   result->image.whole_height = image.height;
+  result->repairs = film.repairs();
   result->seconds.render = total.seconds();
+}
+
+std::vector<std::string> describe_repairs(int frame, const RenderResult& result) {
+  std::vector<std::string> lines;
+  const auto say = [&](std::size_t count, const char* what) {
+    if (count > 0) lines.push_back(fmt::format("frame {}: {} {}", frame, count, what));
+  };
+  say(result.replaced_answers, "densities were not finite: the oracle answered in their place");
+  say(result.repairs.not_finite,
+      "values of pixels or samples were not finite in single precision: left at 0");
+  say(result.repairs.negative, "pixels were negative: raised to 0");
+  return lines;
 }
 
 }  // namespace
@@ -110,23 +123,30 @@ RenderResult render_frame(BuiltJob& built, int frame, const DeviceInfo& device,
     built.go_to(frame);
   }
   const double device_seconds = built.device_seconds();
+  const std::size_t replaced_answers = built.replaced_answers();
   AuditSampler sampler(job.seed, job.audit.samples);
   render_rows(built, rows.value_or(RowRange{0, job.image.height}), progress, &sampler, &result);
 
   const Stopwatch auditing;
   result.audited = audit(sampler.samples(), built.surfaces());
   result.audit = audit_result(result.audited);
+  result.audited_pixels = audit_pixels(built, result.image);
+  result.picture_audit = picture_audit(result.audited_pixels);
   result.seconds.audit = auditing.seconds();
   result.seconds.surfaces = built.surface_seconds();
   result.seconds.scene = built.scene_seconds();
   result.seconds.build = built.build_seconds();
   result.device_bytes = built.device_bytes();
   result.device_seconds = built.device_seconds() - device_seconds;
+  result.replaced_answers = built.replaced_answers() - replaced_answers;
   result.surface_notes = built.notes();
   result.surface_warnings = built.warnings();
+  for (const std::string& line : describe_repairs(frame, result)) result.surface_warnings.push_back(line);
   result.image.metadata = picture_identity(job, frame, built.inputs());
   result.image.metadata["mica:device"] = device.name;
   if (result.audit.samples) result.image.metadata["mica:audit"] = describe(result.audit);
+  if (result.picture_audit.pixels)
+    result.image.metadata["mica:audit.picture"] = describe(result.picture_audit);
   result.seconds.total = before + total.seconds();
   return result;
 }

@@ -11,6 +11,8 @@
 #include "host/job/job.h"
 #include "host/render/audit.h"
 #include "host/render/built_job.h"
+#include "host/render/film.h"
+#include "host/render/picture_audit.h"
 #include "host/render/plan.h"
 
 namespace mica::host {
@@ -33,7 +35,11 @@ struct RenderResult {
   std::size_t device_bytes = 0;  ///< of all structures, as allocated
   double device_seconds = 0;     ///< that kernels ran, by the device's clock
   std::vector<AuditedSample> audited;
-  AuditResult audit;
+  AuditedPixels audited_pixels;
+  AuditResult audit;  ///< of queries
+  PictureAudit picture_audit;
+  FilmRepairs repairs;
+  std::size_t replaced_answers = 0;  ///< that were not finite, and are the oracle's
   std::vector<std::string> surface_notes, surface_warnings;
 };
 

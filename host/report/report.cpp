@@ -85,6 +85,14 @@ std::string render_json(const Job& job, const DeviceInfo& device, const RenderRe
                    {"relative_l2", result.audit.relative_l2},
                    {"percentile_99", result.audit.percentile_99},
                    {"maximum", result.audit.maximum}};
+  json["picture_audit"] = {{"pixels", result.picture_audit.pixels},
+                           {"relative_l2", result.picture_audit.relative_l2},
+                           {"upper_bound", result.picture_audit.upper_bound},
+                           {"reference_subpixels", result.picture_audit.subpixels},
+                           {"reference_l2", result.picture_audit.reference_l2}};
+  json["repairs"] = {{"not_finite", result.repairs.not_finite},
+                     {"negative", result.repairs.negative},
+                     {"replaced_answers", result.replaced_answers}};
   json["notes"] = result.surface_notes;
   json["warnings"] = result.surface_warnings;
   return json.dump(2) + "\n";
@@ -124,6 +132,12 @@ std::string render_summary(const DeviceInfo& device, const RenderResult& result)
         "maximum {:.2e}\n",
         result.audit.samples, result.audit.relative_l2, result.audit.percentile_99, result.audit.maximum);
   }
+  if (result.picture_audit.pixels)
+    text += fmt::format(
+        "picture   {} pixels integrated again: relative L2 {:.2e}, at most {:.2e} at 95% confidence ({}x{} "
+        "footprints each, within {:.1e} of half as many a side)\n",
+        result.picture_audit.pixels, result.picture_audit.relative_l2, result.picture_audit.upper_bound,
+        result.picture_audit.subpixels, result.picture_audit.subpixels, result.picture_audit.reference_l2);
   return text;
 }
 

@@ -2,19 +2,20 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
 #include "host/base/constants.h"
+#include "host/base/normal_equations.h"
 #include "mica/error.h"
 
 namespace mica::host {
 namespace {
 
-constexpr double kGaussianReach = 3;    // standard deviations
-constexpr double kLatticeSigma = 0.6;   // of subpixels: the ripple of their sum is 2 exp(-2 (0.6 pi)^2)
-constexpr double kSubpixelSigma = 0.5;  // of FilterKind::subpixels
+constexpr double kGaussianReach = 3;   // standard deviations
+constexpr double kLatticeSigma = 0.6;  // of subpixels: the ripple of their sum is 2 exp(-2 (0.6 pi)^2)
+constexpr double kReferenceReach = 4, kReferenceSigma = 0.8;  // the same for a reference
+constexpr double kSubpixelSigma = 0.5;                        // of FilterKind::subpixels
 
 double gaussian(double x, double sigma) {
   return std::exp(-0.5 * x * x / (sigma * sigma)) / (sigma * std::sqrt(2 * kPi));
@@ -34,6 +35,15 @@ double blackman_harris(double x, double width) {
   return window / (0.35875 * width);
 }
 
+/// Gaussians of half a subpixel in subpixels of `width`.
+double sum_over_subpixels(double x, double width) {
+  const long count = std::lround(1 / width);
+  double sum = 0;
+  for (long n = 0; n < count; ++n)
+    sum += width * gaussian(x - (static_cast<double>(n) + 0.5) * width + 0.5, kSubpixelSigma * width);
+  return sum;
+}
+
 /// Integral of f over [-reach, reach], by the midpoint rule.
 template <typename Function>
 double integral(double reach, const Function& f) {
@@ -41,6 +51,15 @@ double integral(double reach, const Function& f) {
   double sum = 0;
   for (int n = 0; n < steps; ++n) sum += f(reach * ((2 * n + 1.0) / steps - 1));
   return sum * 2 * reach / steps;
+}
+
+/// Without the Gaussians that hardly count.
+FilterSum without_light_parts(FilterSum sum) {
+  const double least = 1e-6 * *std::max_element(sum.weights.begin(), sum.weights.end());
+  double total = 0;
+  for (double& weight : sum.weights) total += weight = weight < least ? 0 : weight;
+  for (double& weight : sum.weights) weight /= total;
+  return sum;
 }
 
 /// The least squares of `gram` w = `right` among weights that are not negative: those that would be are
@@ -57,7 +76,7 @@ Eigen::VectorXd weights_of(const Eigen::MatrixXd& gram, const Eigen::VectorXd& r
       for (Eigen::Index j = 0; j < size; ++j)
         some(i, j) = gram(kept[static_cast<std::size_t>(i)], kept[static_cast<std::size_t>(j)]);
     }
-    const Eigen::VectorXd solved = some.ldlt().solve(some_right);
+    const Eigen::VectorXd solved = solve_normal_equations(some, some_right);
     Eigen::Index least = 0;
     if (size == 1 || solved.minCoeff(&least) >= 0) {
       Eigen::VectorXd all = Eigen::VectorXd::Zero(right.size());
@@ -109,6 +128,12 @@ PixelFilter::PixelFilter(const FilterDescription& description) : description_(de
     throw UsageError(fmt::format("pixel filter of width {}", description.width));
 }
 
+PixelFilter PixelFilter::for_reference(int subpixels) const {
+  PixelFilter filter = *this;
+  filter.reference_subpixels_ = subpixels;
+  return filter;
+}
+
 double PixelFilter::density(double offset_pixels) const {
   switch (description_.kind) {
     case FilterKind::gaussian:
@@ -120,15 +145,15 @@ double PixelFilter::density(double offset_pixels) const {
     case FilterKind::subpixels:
       break;
   }
-  double sum = 0;
-  for (const double x : {-0.375, -0.125, 0.125, 0.375})
-    sum += gaussian(offset_pixels - x, kSubpixelSigma / 4) / 4;
-  return sum;
+  return sum_over_subpixels(offset_pixels, 1.0 / (reference_subpixels_ > 0 ? reference_subpixels_ : 4));
 }
 
 double PixelFilter::reach_pixels() const {
-  if (description_.kind == FilterKind::gaussian) return kGaussianReach * description_.width;
-  return description_.kind == FilterKind::subpixels ? 0.5 : description_.width / 2;
+  const bool reference = reference_subpixels_ > 0;
+  if (description_.kind == FilterKind::gaussian)
+    return (reference ? kReferenceReach : kGaussianReach) * description_.width;
+  if (description_.kind != FilterKind::subpixels) return description_.width / 2;
+  return reference ? 0.5 + (kReferenceReach - 1) * kSubpixelSigma / reference_subpixels_ : 0.5;
 }
 
 int PixelFilter::margin_pixels() const {
@@ -136,19 +161,27 @@ int PixelFilter::margin_pixels() const {
 }
 
 FilterSum PixelFilter::on_lattice(int subpixels) const {
+  const FilterSum sum = whole_lattice(subpixels);
+  return reference_subpixels_ > 0 ? without_light_parts(sum) : sum;
+}
+
+FilterSum PixelFilter::whole_lattice(int subpixels) const {
   const auto count = static_cast<std::size_t>(2 * margin_pixels() + 1) * static_cast<std::size_t>(subpixels);
   const double spacing = 1.0 / subpixels, width = description_.width;
+  const double sigma = (reference_subpixels_ > 0 ? kReferenceSigma : kLatticeSigma) * spacing;
   switch (description_.kind) {
     case FilterKind::gaussian:
-      return fit_gaussians(gaussian, width, 6 * width, std::min(kLatticeSigma * spacing, width), count,
-                           spacing);
+      return fit_gaussians(gaussian, width, 6 * width, std::min(sigma, width), count, spacing);
     case FilterKind::blackman_harris:
-      return fit_gaussians(blackman_harris, width, width / 2, kLatticeSigma * spacing, count, spacing);
+      return fit_gaussians(blackman_harris, width, width / 2, sigma, count, spacing);
     case FilterKind::box:
       return fit_gaussians(box, width, width / 2, kSubpixelSigma * spacing, count, spacing);
     case FilterKind::subpixels:
       break;
   }
+  if (reference_subpixels_ > 0)
+    return fit_gaussians(sum_over_subpixels, 1.0 / reference_subpixels_, 1 + 1.0 / reference_subpixels_,
+                         std::min(sigma, kSubpixelSigma / reference_subpixels_), count, spacing);
   FilterSum sum;
   sum.sigma_pixels = kSubpixelSigma * spacing;
   for (int n = 0; n < subpixels; ++n) {

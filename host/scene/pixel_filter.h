@@ -38,9 +38,13 @@ class PixelFilter {
   /// Throws UsageError for a width that is not finite and positive.
   explicit PixelFilter(const FilterDescription& description);
 
-  /// Along one axis, its integral being 1; of `subpixels` with 4 of them.
+  /// The same filter for a reference on finer lattices: less is cut off, and the Gaussians overlap more.
+  /// @param subpixels a pixel that define FilterKind::subpixels; the other kinds do not depend on them.
+  PixelFilter for_reference(int subpixels) const;
+
+  /// Along one axis, its integral being 1; of `subpixels` with 4 of them, if not for a reference with others.
   double density(double offset_pixels) const;
-  /// Light from further away along an axis has no weight, or less than 0.3% in all.
+  /// Light from further away along an axis has no weight, or less than 0.3% in all; 0.01% for a reference.
   double reach_pixels() const;
   /// Pixels beyond a pixel whose light it sees, along an axis.
   int margin_pixels() const;
@@ -52,7 +56,10 @@ class PixelFilter {
   FilterSum by_few() const;
 
  private:
+  FilterSum whole_lattice(int subpixels) const;
+
   FilterDescription description_;
+  int reference_subpixels_ = 0;  // for a reference: that define the kind of that name; else 0
 };
 
 /// The sum of `count` Gaussians of `sigma`, `spacing` apart, nearest to `density` in the mean square, with

@@ -1,11 +1,11 @@
 #include "host/scene/pixel_fit.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
+#include "host/base/normal_equations.h"
+#include "host/base/symmetric_matrix.h"
 #include "host/scene/footprint.h"
 #include "host/scene/wrap.h"
 
@@ -44,13 +44,12 @@ const Basis& basis() {
 
 /// By least squares, with weights of a Gaussian of half a pixel.
 Quadratic fit(const Values& values, Values* residual = nullptr) {
-  static const Eigen::Matrix<double, 6, kRays> solve = [] {
-    const Eigen::Matrix<double, 6, kRays> weighted = basis().transpose() * ray_weights().asDiagonal();
-    const Eigen::Matrix<double, 6, 6> gram = weighted * basis();
-    return Eigen::Matrix<double, 6, kRays>(gram.inverse() * weighted);
+  static const Eigen::MatrixXd solve = [] {
+    const Eigen::MatrixXd weighted = basis().transpose() * ray_weights().asDiagonal();
+    return solve_normal_equations(weighted.lazyProduct(basis()), weighted);
   }();
-  const Eigen::Matrix<double, 6, 1> c = solve * values;
-  if (residual) *residual = values - basis() * c;
+  const Eigen::Matrix<double, 6, 1> c = solve.lazyProduct(values);
+  if (residual) *residual = values - basis().lazyProduct(c);
   Quadratic result;
   result.value = c[0];
   result.slope = {c[1], c[2]};
@@ -162,7 +161,7 @@ PixelFit::LampFit PixelFit::fit_lamp(std::size_t lamp) const {
 /// half vector adds, by direction in the coordinates in which the Gaussian is round.
 Eigen::Matrix2d PixelFit::second_order(const LampFit& lamp, const Eigen::Matrix2d& normal_change,
                                        const Eigen::Matrix2d& cov) const {
-  const Eigen::Matrix2d root = cov.llt().matrixL();
+  const Eigen::Matrix2d root = cholesky_factor(cov);
   const auto round = [&](const Quadratic& q) -> Eigen::Matrix2d { return root.transpose() * q.turn * root; };
   const Eigen::Matrix2d u = round(u_), v = round(v_), s = round(lamp.s), t = round(lamp.t);
   return s * s + t * t + normal_change(0, 0) * u * u + normal_change(1, 1) * v * v +
@@ -187,7 +186,7 @@ Eigen::Vector2d PixelFit::best_shift(const Eigen::Matrix2d& axes, const Eigen::M
 bool PixelFit::query_of(const Gaussian& part, const LampFit& lamp, GlintQuery* query) const {
   constexpr double most_shift = 0.3;  // standard deviations: beyond it the first order is none
   const Eigen::Vector2d& mean = part.mean;
-  const Eigen::Matrix2d root = part.cov.llt().matrixL();
+  const Eigen::Matrix2d root = cholesky_factor(part.cov);
   Eigen::Matrix2d duv, dh;
   duv << u_.slope_at(mean).transpose(), v_.slope_at(mean).transpose();
   dh << lamp.s.slope_at(mean).transpose(), lamp.t.slope_at(mean).transpose();
@@ -261,14 +260,14 @@ bool PixelFit::ask(std::size_t lamp, const FilterSum& filter, const Eigen::Matri
       continue;
     }
     // Along the direction that bends most: along it alone its share falls with sigma^4.
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(second);
+    const PrincipalAxes axes = principal_axes(second);
     const auto& splits = gaussian_splits();
     const auto enough = std::find_if(splits.begin(), splits.end(), [&](const GaussianSplit& split) {
-      return 0.5 * (axes.eigenvalues()[0] + axes.eigenvalues()[1] * std::pow(split.sigma, 4)) <= limit2;
+      return 0.5 * (axes.eigenvalues[0] + axes.eigenvalues[1] * std::pow(split.sigma, 4)) <= limit2;
     });
     const GaussianSplit& split = enough == splits.end() ? splits.back() : *enough;
-    const Eigen::Matrix2d root = part.cov.llt().matrixL();
-    const Eigen::Vector2d axis = root * axes.eigenvectors().col(1);
+    const Eigen::Matrix2d root = cholesky_factor(part.cov);
+    const Eigen::Vector2d axis = root * axes.eigenvectors.col(1);
     const Eigen::Matrix2d cov = part.cov - (1 - split.sigma * split.sigma) * axis * axis.transpose();
     for (std::size_t n = 0; n < split.parts.weights.size(); ++n)
       parts.push_back(

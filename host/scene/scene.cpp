@@ -150,7 +150,12 @@ TracedRows Scene::trace(int first_row, int row_count) const {
   if (first_row < 0 || row_count < 0 || first_row > self.height - row_count)
     throw UsageError(
         fmt::format("rows {} to {} of an image of {} rows", first_row, first_row + row_count, self.height));
-  return trace_rows(self.viewer, self.pixels, self.width, self.height, first_row, row_count);
+  return trace_rows(self.viewer, self.pixels, {self.width, self.height, first_row, row_count, 0, self.width});
+}
+
+TracedRows Scene::trace_pixel(int row, int column, const PixelSettings& pixels) const {
+  const Implementation& self = *implementation_;
+  return trace_rows(self.viewer, pixels, {self.width, self.height, row, 1, column, 1});
 }
 
 }  // namespace mica::host

@@ -59,7 +59,7 @@ struct PixelSettings {
   int subpixels = 4;  ///< samples a pixel and axis, 1..16, where one footprint will not do
   PixelFilter filter = PixelFilter({});
   bool fits = false;                           ///< pixels may be fitted; else all are sums of samples
-  std::vector<bool> takes_first_order;         ///< a material: its method knows turns of the half vector
+  std::vector<bool> takes_first_order;         ///< a material: queries have their half vector's turn
   std::vector<Eigen::Matrix2d> normal_change;  ///< a material: E[(dn/du)' dn/du] of its map, per uv^2
   double largest_residual = 0.1;               ///< of a fit, see FitLimits
 };
@@ -101,6 +101,10 @@ class Scene {
   /// Traces rows [first_row, first_row + row_count). The result depends on nothing but the scene and the
   /// rows. Throws UsageError for rows outside the image.
   TracedRows trace(int first_row, int row_count) const;
+
+  /// Traces one pixel in another way, a row of one.
+  /// @param pixels without fits; of any number of subpixels.
+  TracedRows trace_pixel(int row, int column, const PixelSettings& pixels) const;
 
   /// What was assumed and repaired in the images of backgrounds and environments.
   const Findings& findings() const;

@@ -105,17 +105,18 @@ struct FittedPixel {
 /// All steps of a block of rows. Rows and columns count from the block's first pixel.
 class BlockTracer {
  public:
-  BlockTracer(const Viewer& viewer, const PixelSettings& pixels, int width, int height, int first_row,
-              int row_count)
+  BlockTracer(const Viewer& viewer, const PixelSettings& pixels, const ImagePart& part)
       : viewer_(viewer),
         pixels_(pixels),
-        width_(width),
-        first_row_(first_row),
-        first_seen_(std::max(-margin_, -first_row)),
-        end_seen_(std::min(row_count + margin_, height - first_row)),
-        rows_(empty_rows(first_row, row_count, width)),
-        fits_(first_seen_, std::max(end_seen_ - first_seen_, 0), 0, width) {
-    rows_.lattice = {width, margin_, pixels.subpixels, lattice_filter_, {}};
+        image_width_(part.image_width),
+        width_(part.column_count),
+        first_row_(part.first_row),
+        first_column_(part.first_column),
+        first_seen_(std::max(-margin_, -first_row_)),
+        end_seen_(std::min(part.row_count + margin_, part.image_height - first_row_)),
+        rows_(empty_rows(first_row_, part.row_count, width_)),
+        fits_(first_seen_, std::max(end_seen_ - first_seen_, 0), 0, width_) {
+    rows_.lattice = {width_, margin_, pixels.subpixels, lattice_filter_, {}};
   }
 
   TracedRows trace() {
@@ -141,16 +142,16 @@ class BlockTracer {
 
   /// A number for a place of the image; inside it that of the pixel.
   std::uint64_t key(int row, int column) const {
-    const std::int64_t down = first_row_ + row;
-    if (down >= 0 && column >= 0 && column < width_)
-      return static_cast<std::uint64_t>(down) * static_cast<std::uint64_t>(width_) +
-             static_cast<std::uint64_t>(column);
-    return scramble_bits(static_cast<std::uint64_t>(down) * kGoldenBits + static_cast<std::uint64_t>(column));
+    const std::int64_t down = first_row_ + row, right = first_column_ + column;
+    if (down >= 0 && right >= 0 && right < image_width_)
+      return static_cast<std::uint64_t>(down) * static_cast<std::uint64_t>(image_width_) +
+             static_cast<std::uint64_t>(right);
+    return scramble_bits(static_cast<std::uint64_t>(down) * kGoldenBits + static_cast<std::uint64_t>(right));
   }
   Probe probe(double row, double column, std::uint64_t corner) const {
     const std::uint64_t hash = random_bits(
         key(static_cast<int>(std::floor(row)), static_cast<int>(std::floor(column))), kProbes, corner);
-    return probe_of(viewer_.look(column, first_row_ + row, shadow_sample(hash, 0, 1)));
+    return probe_of(viewer_.look(first_column_ + column, first_row_ + row, shadow_sample(hash, 0, 1)));
   }
 
   void fit_pixels();
@@ -165,6 +166,15 @@ class BlockTracer {
     return row >= first_seen_ && row < end_seen_ && column >= 0 && column < width_ &&
            fits_.at(row, column).has_value();
   }
+  /// Whether a sample has weight in a pixel, of a part that is one: by subpixels from its first ones.
+  bool is_seen(int down, int right) const {
+    if (width_ != 1 || rows_.row_count != 1) return true;
+    const auto counts = [&](int subpixel) {
+      return lattice_filter_.weights[static_cast<std::size_t>(subpixel)] > 0;
+    };
+    const int first = margin_ * pixels_.subpixels;
+    return counts(down + first) && counts(right + first);
+  }
   bool is_sampled(int row, int column) const {
     return row >= first_seen_ && row < end_seen_ && column >= 0 && column < width_ && !has_fit(row, column);
   }
@@ -172,7 +182,7 @@ class BlockTracer {
   static constexpr std::uint64_t kProbes = 0x70726f6265;  // a stream of its own
   const Viewer& viewer_;
   const PixelSettings& pixels_;
-  const int width_, first_row_;
+  const int image_width_, width_, first_row_, first_column_;
   const FilterSum lattice_filter_ = pixels_.filter.on_lattice(pixels_.subpixels);
   const FilterSum few_ = pixels_.filter.by_few();
   const int margin_ = pixels_.filter.margin_pixels(), reach_ = std::max(margin_, 1);
@@ -299,7 +309,12 @@ void BlockTracer::sample_cell(int row, int column, std::uint32_t first_sample, R
   std::vector<SeenPoint> points;
   for (int k = 0; k < n * n; ++k) {
     const int right = k % n, down = k / n;
-    points.push_back(viewer_.look(column + (right + 0.5) / n, first_row_ + row + (down + 0.5) / n,
+    if (!is_seen(row * n + down, column * n + right)) {
+      points.emplace_back();
+      continue;
+    }
+    points.push_back(viewer_.look(first_column_ + column + (right + 0.5) / n,
+                                  first_row_ + row + (down + 0.5) / n,
                                   shadow_sample(key(row, column), k, n)));
   }
   const std::vector<std::vector<Eigen::Matrix2d>> turns = turns_of(points);
@@ -354,7 +369,7 @@ std::optional<Eigen::Matrix2d> half_vector_change(const std::vector<SeenPoint>& 
 /// The half vectors' turns over the samples of a pixel, by sample and lamp.
 std::vector<std::vector<Eigen::Matrix2d>> BlockTracer::turns_of(const std::vector<SeenPoint>& points) const {
   std::vector<std::vector<Eigen::Matrix2d>> turns(points.size());
-  for (std::size_t k = 0; k < points.size() && pixels_.fits; ++k) {
+  for (std::size_t k = 0; k < points.size(); ++k) {
     const SeenPoint& point = points[k];
     if (!point.hit || !point.faces_eye || !pixels_.takes_first_order[point.material]) continue;
     turns[k].assign(point.lamps.size(), Eigen::Matrix2d::Zero());
@@ -370,9 +385,8 @@ std::vector<std::vector<Eigen::Matrix2d>> BlockTracer::turns_of(const std::vecto
 
 }  // namespace
 
-TracedRows trace_rows(const Viewer& viewer, const PixelSettings& pixels, int width, int height, int first_row,
-                      int row_count) {
-  return BlockTracer(viewer, pixels, width, height, first_row, row_count).trace();
+TracedRows trace_rows(const Viewer& viewer, const PixelSettings& pixels, const ImagePart& part) {
+  return BlockTracer(viewer, pixels, part).trace();
 }
 
 }  // namespace mica::host

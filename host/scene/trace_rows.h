@@ -4,8 +4,14 @@
 
 namespace mica::host {
 
-/// Traces rows [first_row, first_row + row_count) of an image; see Scene.
-TracedRows trace_rows(const Viewer& viewer, const PixelSettings& pixels, int width, int height, int first_row,
-                      int row_count);
+/// A part of an image. What `TracedRows` tells of it has its width.
+struct ImagePart {
+  int image_width, image_height;
+  int first_row, row_count;
+  int first_column, column_count;
+};
+
+/// Traces a part of an image; see Scene. Of whole rows, if pixels are to be fitted.
+TracedRows trace_rows(const Viewer& viewer, const PixelSettings& pixels, const ImagePart& part);
 
 }  // namespace mica::host

@@ -41,6 +41,11 @@ class MICA_API Evaluator {
   void evaluate(const Queries& queries, Span<double> densities, const RunControl& control = {}) const;
   std::vector<float> evaluate(const Queries& queries, const RunControl& control = {}) const;
 
+  /// How far each density may be off, of methods that tell: "auto" (its class of queries' relative L2 at 95%
+  /// confidence), "triangles" and "reference". @param densities the answers to `queries`. @param errors as
+  /// many. Throws UsageError for other methods.
+  void estimate_errors(const Queries& queries, Span<const float> densities, Span<float> errors) const;
+
   /// P-NDFs as images: D at the centres of pixels, 0 off the disk. @param roughness of each footprint.
   /// @param images count * pixels * pixels numbers.
   void draw(const Footprints& footprints, const Column& roughness, const PndfWindow& window,

@@ -22,13 +22,15 @@ struct MICA_API Image {
   std::vector<float> pixels;                    ///< width * height * channels
   std::map<std::string, std::string> metadata;  ///< job, frame, device, audit
   std::vector<std::string> notes;               ///< what was assumed, and what that cost
+  double exposure_stops = 0;                    ///< of its preview, as the job has it
+  std::string tone_map = "shoulder";            ///< of its preview: clamp, shoulder, reinhard or filmic
 
   /// All of one channel, width * height numbers. Throws UsageError for a name that is not there.
   std::vector<float> channel(const std::string& name) const;
 };
 
 /// Writes FILE.exr with all channels, or FILE.png for the eye; whole or not at all. Throws FileError, and
-/// UsageError for another ending.
+/// UsageError for another ending or tone map. @param exposure_stops more than the image's own.
 MICA_API void write(const Image& image, const std::string& path, double exposure_stops = 0);
 
 /// A job: a scene and what is wanted of it, docs/job.md. Copies share it.

@@ -52,6 +52,16 @@ class MICA_API Method {
   virtual std::unique_ptr<Densities> make(const NormalMap& map, const std::vector<double>& numbers) const = 0;
 };
 
+/// What a method can be asked for.
+struct MethodInfo {
+  std::string name;
+  std::string summary;           ///< one line
+  bool needs_map = true;         ///< else it has glints of its own
+  bool has_densities = true;     ///< Evaluator takes it
+  bool has_brdf = false;         ///< Brdf takes it
+  bool keeps_tolerance = false;  ///< it has the setting `tolerance`
+};
+
 /// The methods that there are, by name. A value: add yours to a copy, and hand that on.
 class MICA_API Methods {
  public:
@@ -60,6 +70,8 @@ class MICA_API Methods {
   /// Throws UsageError for no method, and for a name that is taken or no word.
   void add(std::shared_ptr<const Method> method);
   std::vector<std::string> names() const;
+  /// Throws UsageError for a name that is not there.
+  MethodInfo info(const std::string& name) const;
   /// Every setting of a method in words, a line each. Throws UsageError for a name that is not there.
   std::vector<std::string> settings_of(const std::string& name) const;
 
@@ -72,5 +84,9 @@ class MICA_API Methods {
 
 /// `mica` with these methods: what the installed command does for argv, and its exit code.
 MICA_API int run_command(int argc, const char* const* argv, const Methods& methods = {});
+
+/// The same as the whole program of a process: its log goes to standard error, and SIGINT and SIGTERM end it
+/// as they end the installed command. Call it once, from `main`.
+MICA_API int run_program(int argc, const char* const* argv, const Methods& methods = {});
 
 MICA_END_NAMESPACE

@@ -42,7 +42,10 @@ class MICA_API NormalMap {
   int width() const;   ///< texels
   int height() const;  ///< texels
   Interpolation interpolation() const;
-  /// s, t of every texel, in the order of from_normals. @param normals 2 * width * height numbers.
+  /// s, t of every texel in place, in the order of from_normals: 2 * width * height numbers, which live as
+  /// long as the map or a copy of it.
+  Span<const double> normals() const;
+  /// The same, copied. @param normals 2 * width * height numbers.
   void copy_normals(Span<float> normals) const;
   void copy_normals(Span<double> normals) const;
   /// What was assumed when it was read, and what that cost.

@@ -32,15 +32,25 @@ typedef struct {
 #endif
 } slope_sums;
 
-// Adds the 4x4 cells of which the first is (i, j) of the unrolled level.
+static inline int slope_row(global const mica_slope_footprint* at) {
+  return at->width + MICA_SLOPE_APRON;
+}
+static inline int slope_plane(global const mica_slope_footprint* at) {
+  return slope_row(at) * (at->height + MICA_SLOPE_APRON);
+}
+
+// Adds the 4x4 cells of which the first is (i, j) of the unrolled level. Means count from `origin_x` and
+// `origin_y`, in the level's units: those under one footprint, so that no variance is a small difference of
+// large squares.
 static inline void add_cells(global const mica_slope_footprint* at, global const short* pyramid, int i, int j,
-                             private slope_sums* sums) {
-  const int row = at->width + MICA_SLOPE_APRON, plane = row * (at->height + MICA_SLOPE_APRON);
+                             float origin_x, float origin_y, private slope_sums* sums) {
+  const int row = slope_row(at), plane = slope_plane(at);
   const int inside_i = i - floor_divide(i, at->width) * at->width,
             inside_j = j - floor_divide(j, at->height) * at->height;
   global const short* cell = pyramid + at->offset + inside_j * row + inside_i;
-  const wave_float mean_x = at->mean_unit * wave_to_float(wave_load_short_4x4(cell, row));
-  const wave_float mean_y = at->mean_unit * wave_to_float(wave_load_short_4x4(cell + plane, row));
+  const wave_float mean_x = at->mean_unit * (wave_to_float(wave_load_short_4x4(cell, row)) - origin_x);
+  const wave_float mean_y =
+      at->mean_unit * (wave_to_float(wave_load_short_4x4(cell + plane, row)) - origin_y);
   const wave_float a = at->spread_unit * wave_to_float(wave_load_short_4x4(cell + 2 * plane, row));
   const wave_float b = at->spread_unit * wave_to_float(wave_load_short_4x4(cell + 3 * plane, row));
   const wave_float c = at->spread_unit * wave_to_float(wave_load_short_4x4(cell + 4 * plane, row));
@@ -74,12 +84,14 @@ static inline slope_lobe footprint_slopes(global const mica_slope_footprint* at,
   const float reach_x = MICA_SLOPE_REACH * at->sigma_x, reach_y = MICA_SLOPE_REACH * at->sigma_y;
   // Centres of cell n lie at n + 1/2, relative to the mean's whole cell.
   const float mean_x = at->cell_x - 0.5f, mean_y = at->cell_y - 0.5f;
+  global const short* own = pyramid + at->offset + at->cell_j * slope_row(at) + at->cell_i;
+  const float origin_x = own[0], origin_y = own[slope_plane(at)];
   const int last_j = (int)floor(mean_y + reach_y);
   for (int j = (int)ceil(mean_y - reach_y); j <= last_j; j += 4) {
     const float lean_1 = at->shear * (j - mean_y), lean_2 = at->shear * (min(j + 3, last_j) - mean_y);
     const int last_i = (int)floor(mean_x + reach_x + max(lean_1, lean_2));
     for (int i = (int)ceil(mean_x - reach_x + min(lean_1, lean_2)); i <= last_i; i += 4)
-      add_cells(at, pyramid, at->cell_i + i, at->cell_j + j, &sums);
+      add_cells(at, pyramid, at->cell_i + i, at->cell_j + j, origin_x, origin_y, &sums);
   }
   const float scale = 1.0f / wave_sum(sums.weight, scratch);
   slope_lobe lobe;
@@ -94,6 +106,8 @@ static inline slope_lobe footprint_slopes(global const mica_slope_footprint* at,
   lobe.y_i = fma(-lobe.mean_y, mean_i, scale * wave_sum(sums.y_i, scratch));
   lobe.y_j = fma(-lobe.mean_y, mean_j, scale * wave_sum(sums.y_j, scratch));
 #endif
+  lobe.mean_x = fma(at->mean_unit, origin_x, lobe.mean_x);
+  lobe.mean_y = fma(at->mean_unit, origin_y, lobe.mean_y);
   return lobe;
 }
 
@@ -107,7 +121,7 @@ static inline wave_float hermite_weight(wave_int n) {
   return wave_select(inner, outer, wave_mask(n >= 2));
 }
 
-// The Cholesky factor (x 0; y z) of a lobe's covariance. What rounding leaves of a flat one need not be a
+// The Cholesky factor (x 0; y z) of a lobe's covariance. What rounding leaves of a thin one need not be a
 // covariance: |xy| <= sqrt(xx yy) is seen to.
 static inline float3 slope_factor(slope_lobe lobe) {
   const float x = sqrt(max(lobe.xx, 1e-20f)), reach = sqrt(max(lobe.yy, 0.0f));
@@ -126,9 +140,10 @@ static inline slope_lobe with_roughness(slope_lobe lobe, float inverse_roughness
   const wave_float w = fma(p_x, p_x, fma(p_y, p_y, 1.0f)), k = 1.0f + w;
   const wave_float weighted = weight * w;
   const float variance = 1.0f / (inverse_roughness * inverse_roughness);
-  lobe.xx = fma(variance, wave_sum(weighted * fma(k * p_x, p_x, 1.0f), scratch), max(lobe.xx, 0.0f));
-  lobe.xy = fma(variance, wave_sum(weighted * k * p_x * p_y, scratch), lobe.xy);
-  lobe.yy = fma(variance, wave_sum(weighted * fma(k * p_y, p_y, 1.0f), scratch), max(lobe.yy, 0.0f));
+  lobe.xx = fma(variance, wave_sum(weighted * fma(k * p_x, p_x, 1.0f), scratch), factor.x * factor.x);
+  lobe.xy = fma(variance, wave_sum(weighted * k * p_x * p_y, scratch), factor.x * factor.y);
+  lobe.yy = fma(variance, wave_sum(weighted * fma(k * p_y, p_y, 1.0f), scratch),
+                fma(factor.y, factor.y, factor.z * factor.z));
   return lobe;
 }
 

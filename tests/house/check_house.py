@@ -9,7 +9,7 @@ import re
 import sys
 from pathlib import Path
 
-FOLDERS = ("host", "include", "kernels", "tests", "tools", "bench", "samples")
+FOLDERS = ("host", "include", "kernels", "tests", "tools", "bench", "samples", "python")
 SOURCES = {".cpp", ".h", ".cl", ".py", ".sh"}
 LINES = {"kernels": 250}  # a file, at most; 400 elsewhere
 
@@ -73,8 +73,8 @@ class House:
                 target = (file or written).split("/")
                 if parts[0] == "host":
                     self.check_host_edge(name, line, parts[1], written, target)
-                elif parts[0] == "include" and PRIVATE.match(file or written):
-                    self.complain(name, line, f"a public header includes {written}")
+                elif parts[0] in ("include", "python") and PRIVATE.match(file or written):
+                    self.complain(name, line, f"includes {written}; the library's face and the module on it hide that")
                 elif parts[0] == "kernels" and target[0] in ("host", "include"):
                     self.complain(name, line, f"a kernel includes {written}")
                 elif target[:2] == ["host", "app"]:

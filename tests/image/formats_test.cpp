@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "host/image/image.h"
-#include "tests/image/folder.h"
+#include "tests/image/picture_folder.h"
 
 namespace mica::host::formats_test {
 namespace {
@@ -16,18 +16,8 @@ using OIIO::ImageSpec;
 using Change = std::function<void(ImageSpec&)>;
 
 /// What formats can say of their pixels: docs/files.md has the table.
-class Formats : public FolderTest {
+class Formats : public PictureFolderTest {
  protected:
-  template <class Value>
-  std::string write(const std::string& name, ImageSpec spec, const std::vector<Value>& values) const {
-    spec.set_format(OIIO::BaseTypeFromC<Value>::value);
-    auto output = OIIO::ImageOutput::create(path(name));
-    EXPECT_TRUE(output && output->open(path(name), spec)) << name << OIIO::geterror();
-    EXPECT_TRUE(output->write_image(spec.format, values.data())) << output->geterror();
-    EXPECT_TRUE(output->close());
-    return path(name);
-  }
-
   /// An EXR of constant float channels, one part a list of names and values.
   using Part = std::vector<std::pair<std::string, float>>;
   std::string write_exr_parts(const std::string& name, const std::vector<Part>& parts) const {

@@ -36,7 +36,7 @@ const std::vector<Mistake> kUnknownKeys = {
      "filter_width, samples, max_bounces, "
      "aovs, exposure, tone_map "
      "(did you mean \"width\"?)"},
-    {"", "[audit]\n@turbo = 1", "audit.turbo: found an unknown key; expected \"samples\""},
+    {"", "[audit]\n@turbo = 1", "audit.turbo: found an unknown key; expected one of: samples, pixels"},
     {"", "[@lights]",
      "lights: found an unknown key; expected one of: seed, image, frames, surface, camera, material, shape, "
      "light, "

@@ -161,6 +161,24 @@ TEST(LibraryEvaluator, DrawsWhatItAnswers) {
   }
 }
 
+TEST(LibraryEvaluator, TellsHowFarItsAnswersMayBeOff) {
+  const std::vector<Query> queries = some_queries(300);
+  const Evaluator triangles(device(), noise(), "triangles");
+  const std::vector<float> densities = triangles.evaluate(queries);
+  std::vector<float> errors(queries.size(), -1);
+  triangles.estimate_errors(queries, Span<const float>(densities), Span<float>(errors));
+  for (std::size_t n = 0; n < errors.size(); ++n) EXPECT_FLOAT_EQ(errors[n], 1e-4F * densities[n]);
+  EXPECT_THROW(
+      triangles.estimate_errors(queries, Span<const float>(densities.data(), 7), Span<float>(errors)),
+      UsageError);
+  EXPECT_THROW(
+      triangles.estimate_errors(queries, Span<const float>(densities), Span<float>(errors.data(), 7)),
+      UsageError);
+  const Evaluator gaussians(device(), noise(), "gaussians");
+  EXPECT_THROW(gaussians.estimate_errors(queries, Span<const float>(densities), Span<float>(errors)),
+               UsageError);
+}
+
 TEST(LibraryBrdf, AnswersAndRefuses) {
   const Brdf brdf(device(), noise(), "beckmanns");
   Lightings queries;
@@ -192,7 +210,7 @@ TEST(LibraryMap, RefusesWhatIsNoMap) {
   EXPECT_THROW(NormalMap::from_normals(4, 4, normals, 3), UsageError);
   normals[5] = -1;
   EXPECT_THROW(NormalMap::from_normals(4, 4, normals, 3), UsageError);
-  EXPECT_THROW(NormalMap::load("/nowhere/map.exr"), Error);
+  EXPECT_THROW(NormalMap::load("/nowhere/map.exr"), FileError);
   EXPECT_THROW(NormalMap::generate("spektrum"), UsageError);
   EXPECT_THROW(NormalMap::generate("spectrum", {{"rms_slope", 99}}), UsageError);
   EXPECT_THROW(NormalMap::generate("spectrum", {{"rms_slop", 0.1}}), UsageError);
@@ -201,8 +219,12 @@ TEST(LibraryMap, RefusesWhatIsNoMap) {
 TEST(LibraryMap, HasTheNormalsThatItWasGiven) {
   std::vector<double> normals(2 * 16), copy(2 * 16);
   for (std::size_t n = 0; n < normals.size(); ++n) normals[n] = 0.01 * static_cast<double>(n);
-  NormalMap::from_normals(4, 4, normals, 2).copy_normals(Span<double>(copy));
+  const NormalMap map = NormalMap::from_normals(4, 4, normals, 2);
+  map.copy_normals(Span<double>(copy));
   EXPECT_EQ(copy, normals);
+  const Span<const double> in_place = map.normals();
+  EXPECT_EQ(std::vector<double>(in_place.data, in_place.data + in_place.size), normals);
+  EXPECT_EQ(NormalMap(map).normals().data, in_place.data) << "copies share the map";
   EXPECT_THROW(noise().copy_normals(Span<double>(copy)), UsageError);
 }
 

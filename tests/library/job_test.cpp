@@ -54,6 +54,13 @@ TEST(LibraryJob, StopsWhenItIsCancelled) {
   EXPECT_THROW(Renderer(Device(), Job::parse(kJob)).render(control), Cancelled);
 }
 
+TEST(LibraryImage, KnowsHowItsJobShowsIt) {
+  const Image image =
+      Renderer(Device(), Job::parse(kJob, ".", {"image.exposure=2", "image.tone_map=\"filmic\""})).render();
+  EXPECT_EQ(image.exposure_stops, 2);
+  EXPECT_EQ(image.tone_map, "filmic");
+}
+
 TEST(LibraryImage, IsNotWrittenUnlessItIsWhole) {
   Image image;
   image.width = 2, image.height = 2, image.channels = {"R", "G", "B"};
@@ -61,6 +68,8 @@ TEST(LibraryImage, IsNotWrittenUnlessItIsWhole) {
   image.pixels.assign(12, 1.0F);
   EXPECT_THROW(write(image, "x.jpg"), UsageError);
   EXPECT_THROW(write(image, "/nowhere/x.exr"), FileError);
+  image.tone_map = "sepia";
+  EXPECT_THROW(write(image, "x.png"), UsageError);
 }
 
 }  // namespace

@@ -140,6 +140,17 @@ TEST_F(OutsideMethod, IsAskedTheHardCases) {
   EXPECT_GT(asked, 10) << "and found to be an approximation, or refused";
 }
 
+TEST_F(OutsideMethod, IsToldWithWhatItCanBeAskedFor) {
+  const MethodInfo toy = with_toy().info("toy");
+  EXPECT_EQ(toy.summary, "the same density everywhere");
+  EXPECT_TRUE(toy.needs_map && toy.has_densities && !toy.has_brdf && !toy.keeps_tolerance);
+  const MethodInfo cavities = Methods().info("cavities"), grid = Methods().info("grid");
+  EXPECT_TRUE(cavities.needs_map && !cavities.has_densities && cavities.has_brdf);
+  EXPECT_TRUE(!grid.needs_map && grid.has_densities && grid.has_brdf);
+  EXPECT_TRUE(Methods().info("auto").keeps_tolerance);
+  EXPECT_THROW(Methods().info("toy"), UsageError);
+}
+
 TEST_F(OutsideMethod, IsRefusedWhereItIsWrong) {
   Methods methods = with_toy();
   EXPECT_THROW(methods.add(nullptr), UsageError);

@@ -219,11 +219,10 @@ TEST(GatherLight, SeedChangesTheNoise) {
 
 /// The pictures of frames [first, last], one after the other.
 std::vector<Image> render_frames(const std::string& path, int first, int last) {
-  Job job = load_job(path, {});
-  job.frames.first = first, job.frames.last = last;
+  const Job job = load_job(path, {});
   const Plan plan = make_plan(job);
   Device device(0);
-  BuiltJob built(job, plan, device);
+  BuiltJob built(job, plan, device, first);
   std::vector<Image> images;
   for (int frame = first; frame <= last; ++frame)
     images.push_back(render_frame(built, frame, device.info(), [](int, int) {}).image);

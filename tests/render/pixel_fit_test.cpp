@@ -72,8 +72,12 @@ double error(const Image& image, const Image& fine) {
   return std::sqrt(square / all);
 }
 
+const Image& fine_picture() {
+  static const Image fine = render_job({"image.width=640", "image.height=640", "image.subpixels=1"}).image;
+  return fine;
+}
+
 TEST(PixelFit, OneFootprintAPixelShowsAsMuchAsTheFinePicture) {
-  const RenderResult fine = render_job({"image.width=640", "image.height=640", "image.subpixels=1"});
   const RenderResult one = render_job({});
   double queries = 0;
   for (int row = 3; row < kSize - 3; ++row)
@@ -81,15 +85,47 @@ TEST(PixelFit, OneFootprintAPixelShowsAsMuchAsTheFinePicture) {
       queries += static_cast<double>(
           one.image.pixels[static_cast<std::size_t>(row * kSize + column) * one.image.channels.size() + 3]);
   EXPECT_LT(queries / ((kSize - 6) * (kSize - 6)), 1.5);
-  EXPECT_LT(error(one.image, fine.image), 0.005);
+  EXPECT_LT(error(one.image, fine_picture()), 0.005);
   // With constant half vectors sixteen footprints a pixel are further away.
   const RenderResult sixteen = render_job({"image.filter=subpixels"});
-  EXPECT_GT(error(sixteen.image, fine.image), 0.01);
+  EXPECT_GT(error(sixteen.image, fine_picture()), 0.01);
 }
 
 TEST(PixelFit, IsTheSameForAnyBlockSize) {
   const RenderResult whole = render_job({}, kSize);
   for (const int rows : {1, 7}) EXPECT_EQ(render_job({}, rows).image.pixels, whole.image.pixels) << rows;
+}
+
+/// Where pictures are good and where they are bad: by a coarse mixture, and by a smooth lobe without glints.
+TEST(PictureAudit, TellsTheErrorOfThePicture) {
+  for (const std::vector<std::string>& job : std::vector<std::vector<std::string>>{
+           {}, {"material.a.ndf=gaussians", "material.a.elements=1"}, {"material.a.ndf=smooth"}}) {
+    std::vector<std::string> overrides = job;
+    overrides.insert(overrides.end(), {"audit.samples=1", "audit.pixels=300"});
+    const RenderResult audited = render_job(overrides);
+    const PictureAudit& audit = audited.picture_audit;
+    const double truth = error(audited.image, fine_picture());
+    std::printf("relative L2 %.4f: audit %.4f, at most %.4f; %d subpixels, %.5f\n", truth, audit.relative_l2,
+                audit.upper_bound, audit.subpixels, audit.reference_l2);
+    EXPECT_EQ(audit.pixels, 300);
+    EXPECT_NEAR(audit.relative_l2, truth, 0.2 * truth);
+    EXPECT_GE(audit.upper_bound, audit.relative_l2);
+    EXPECT_LE(audit.reference_l2, 0.001);
+    EXPECT_NE(audited.image.metadata.at("mica:audit.picture").find("300 pixels"), std::string::npos);
+  }
+}
+
+/// One footprint with a constant half vector is further from its own filter than sixteen.
+TEST(PictureAudit, CountsWhatConstantHalfVectorsLose) {
+  const auto audit_of = [](const std::string& subpixels) {
+    return render_job({"image.filter=subpixels", "image.subpixels=" + subpixels, "audit.samples=1",
+                       "audit.pixels=40"})
+        .picture_audit;
+  };
+  const PictureAudit one = audit_of("1"), four = audit_of("4");
+  EXPECT_EQ(one.pixels, 40);
+  EXPECT_GT(one.relative_l2, 0.05);
+  EXPECT_LT(four.relative_l2, 0.25 * one.relative_l2);
 }
 
 }  // namespace

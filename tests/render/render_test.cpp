@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "host/job/job.h"
+#include "host/render/built_job.h"
 #include "tests/temporary_path.h"
 
 namespace mica::host::render_test {
@@ -138,6 +139,75 @@ TEST(Render, GlintsAreCoherentInTime) {
   RecordProperty("independent", std::to_string(independent));
   EXPECT_GT(neighbours, 0.95);
   EXPECT_LT(independent, 0.3);
+}
+
+/// A plane under one lamp, looked at along its normal.
+std::string plane_job(const std::string& lamp_height, const std::string& more = "") {
+  const std::string path = temporary_path("render_plane_test.toml");
+  std::ofstream(path) << R"(
+image = { width = 1, height = 1, subpixels = 1, filter = "subpixels" }
+camera = { position = [0, -0.001, 3], look_at = [0, 0, 0], fov = 1 }
+surface.bumps = { generate = "spectrum", resolution = 32, rms_slope = 0.3, correlation = 4 }
+material.gold = { surface = "bumps", roughness = 0.1, diffuse = [0.1, 0.07, 0.02] }
+shape = [{ type = "plane", material = "gold" }]
+light = [{ type = "point", position = [0, 0, )"
+                      << lamp_height << "], intensity = [1e9, 1e9, 1e9] }]\n"
+                      << more;
+  return path;
+}
+
+bool all_finite(const Image& image) {
+  return std::all_of(image.pixels.begin(), image.pixels.end(), [](float x) { return std::isfinite(x); });
+}
+
+/// The light of a lamp that all but touches a surface is more than numbers of a picture hold.
+TEST(Render, CountsWhatAPictureCannotHold) {
+  const Job job = load_job(plane_job("1e-20"), {});
+  const Plan plan = make_plan(job);
+  Device device(0);
+  const RenderResult result = render(job, plan, device, [](int, int) {});
+  EXPECT_TRUE(all_finite(result.image));
+  EXPECT_GT(result.repairs.not_finite, 0u);
+  EXPECT_EQ(result.surface_warnings.size(), 1u);
+  const Job far_job = load_job(plane_job("1"), {});
+  const RenderResult far = render(far_job, plan, device, [](int, int) {});
+  EXPECT_TRUE(all_finite(far.image));
+  EXPECT_EQ(far.repairs.not_finite, 0u);
+  EXPECT_TRUE(far.surface_warnings.empty());
+}
+
+/// A frame by `auto` is the same whichever others are rendered: on a surface that moves, and on one that does
+/// not while the camera comes near.
+TEST(Render, AutoFramesDependOnTheirNumberAlone) {
+  const std::string path = temporary_path("render_auto_test.toml");
+  std::ofstream(path) << R"(
+image = { width = 16, height = 16, subpixels = 3, filter = "subpixels" }
+camera = { keys = [{ frame = 0, position = [0, -40, 20] }, { frame = 2, position = [0, -0.5, 0.3] }] }
+surface.w = { generate = "waves", resolution = 16, patch = 50 }
+surface.f = { generate = "flakes", resolution = 64 }
+material.a = { surface = "w", roughness = 0.02, ndf = "auto", repeat = [2, 2] }
+material.b = { surface = "f", roughness = 0.02, ndf = "auto", repeat = [4, 4] }
+shape = [{ type = "plane", size = 3, material = "a" }, { type = "plane", size = 3, center = [3, 0, 0], material = "b" }]
+light = [{ type = "sphere", position = [0.3, 3, 4] }]
+frames = { range = [0, 2] }
+accuracy = { tolerance = 0.5 }
+)";
+  const Job job = load_job(path, {});
+  const Plan plan = make_plan(job);
+  Device device(0);
+  const auto render_at = [&](BuiltJob& built, int frame) {
+    return render_frame(built, frame, device.info(), [](int, int) {});
+  };
+  BuiltJob built(job, plan, device);
+  std::vector<RenderResult> sequence;
+  for (int frame = 0; frame <= 2; ++frame) sequence.push_back(render_at(built, frame));
+  for (const int frame : {1, 2}) {
+    BuiltJob alone(job, plan, device, frame);
+    EXPECT_EQ(render_at(alone, frame).image.pixels, sequence[static_cast<std::size_t>(frame)].image.pixels)
+        << frame;
+  }
+  // What is noted of a surface is noted of this frame's, not of all before it.
+  EXPECT_LE(sequence[2].surface_notes.size(), sequence[0].surface_notes.size() + 2);
 }
 
 }  // namespace

@@ -75,6 +75,25 @@ TEST(PixelFilter, SubpixelsShareAPixelEvenly) {
   EXPECT_EQ(PixelFilter({}).margin_pixels(), 0);
 }
 
+/// A finer lattice stands for the same sum of Gaussians.
+TEST(PixelFilter, SubpixelsAreTheSameOnAFinerLattice) {
+  for (const int subpixels : {1, 3, 4}) {
+    const PixelFilter filter = PixelFilter({}).for_reference(subpixels);
+    const FilterSum sum = filter.on_lattice(8 * subpixels);
+    EXPECT_LT(sum.relative_l2, 0.01) << subpixels;
+    EXPECT_NEAR(difference(sum, [&](double x) { return filter.density(x); }), sum.relative_l2, 1e-3);
+  }
+  EXPECT_NEAR(PixelFilter({}).for_reference(4).density(0.125), PixelFilter({}).density(0.125), 1e-12);
+}
+
+TEST(PixelFilter, AReferenceCutsOffLess) {
+  for (const FilterKind kind : {FilterKind::gaussian, FilterKind::blackman_harris}) {
+    const PixelFilter filter({kind, 0});
+    EXPECT_LT(filter.for_reference(4).on_lattice(8).relative_l2, 1e-3);
+    EXPECT_LE(filter.for_reference(4).on_lattice(8).relative_l2, filter.on_lattice(8).relative_l2);
+  }
+}
+
 TEST(PixelFilter, SplitsAreTheGaussianWithinSevenPerMille) {
   double before = 1;
   for (const GaussianSplit& split : gaussian_splits()) {

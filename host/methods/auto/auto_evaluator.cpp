@@ -130,10 +130,11 @@ AutoEvaluator::~AutoEvaluator() = default;
 
 QueryClass class_of(const Query& query, int map_width, int map_height) {
   constexpr double slack = 1e-9;
-  const FootprintAxes axes = footprint_axes(without_needless_periods(query.footprint), map_width, map_height);
+  const bool first_order = has_first_order(query);
+  const Query seen = first_order ? place_seen(query) : with_scalar_roughness(query);
+  const FootprintAxes axes = footprint_axes(without_needless_periods(seen.footprint), map_width, map_height);
   return {static_cast<int>(std::floor(0.5 + std::log2(axes.sigma_minor_texels) + slack)),
-          static_cast<int>(
-              std::floor(2 * std::log2(with_scalar_roughness(query).roughness / kFirstRoughness) + slack))};
+          static_cast<int>(std::floor(2 * std::log2(seen.roughness / kFirstRoughness) + slack)), first_order};
 }
 
 CalibrationSample calibration_sample(std::size_t count, std::size_t each, int map_width, int map_height,
@@ -142,7 +143,6 @@ CalibrationSample calibration_sample(std::size_t count, std::size_t each, int ma
   CalibrationSample sample;
   for (std::size_t n = 0; n < count; ++n) {
     const Query one = query(n);
-    if (has_first_order(one)) continue;  // goes to `triangles`
     const QueryClass kind = class_of(one, map_width, map_height);
     sample.counts[kind] += scale;
     auto& heap = kept[kind];
@@ -304,7 +304,6 @@ double AutoEvaluator::cost(Candidate* candidate, const std::vector<Query>& queri
 }
 
 double AutoEvaluator::error_estimate(const Query& query, double density) const {
-  if (has_first_order(query)) return kTrianglesError * density;
   const QueryClass kind = class_of(query, surface_.width(), surface_.height());
   for (const AutoChoice& choice : choices_)
     if (!(choice.kind < kind) && !(kind < choice.kind))
@@ -325,8 +324,7 @@ std::unique_ptr<PendingDensities> AutoEvaluator::start(const std::vector<Query>&
   std::vector<std::size_t> candidates(queries.size());
   tbb::parallel_for(std::size_t{0}, queries.size(), [&](std::size_t n) {
     const auto found = candidate_of_.find(class_of(queries[n], surface_.width(), surface_.height()));
-    candidates[n] =
-        found == candidate_of_.end() || has_first_order(queries[n]) ? candidates_.size() - 1 : found->second;
+    candidates[n] = found == candidate_of_.end() ? candidates_.size() - 1 : found->second;
   });
   const bool alike =
       std::adjacent_find(candidates.begin(), candidates.end(), std::not_equal_to<>()) == candidates.end();

@@ -44,8 +44,7 @@ class AutoEvaluator : public Evaluator {
 
   /// Chooses for every class of the sample, whose queries stand in random order; the first 256 of a class are
   /// used, up to kMostSamples where these cannot tell, and fewer where they take long. Queries of other
-  /// classes go to `triangles`, and so do those of classes that are too small to repay a structure, and those
-  /// whose half vector turns or whose lobe is not round.
+  /// classes go to `triangles`, and so do those of classes that are too small to repay a structure.
   void calibrate(const CalibrationSample& sample);
   double tolerance() const { return tolerance_; }
   std::vector<AutoChoice> choices() const override { return choices_; }

@@ -37,8 +37,8 @@ class AutoMethod : public Method {
             0, "chosen from a sample of the job's queries"};  // bytes at most
   }
 
-  std::unique_ptr<Evaluator> make(Device* device, const Surface* surface,
-                                  const MethodSettings& settings) const override {
+  std::unique_ptr<Evaluator> make_own(Device* device, const Surface* surface,
+                                      const MethodSettings& settings) const override {
     return std::make_unique<AutoEvaluator>(*device, *surface, settings.tolerance.value_or(kAutoTolerance));
   }
 };

@@ -45,8 +45,8 @@ class BeckmannsMethod : public Method {
     return size;
   }
 
-  std::unique_ptr<Evaluator> make(Device* device, const Surface* surface,
-                                  const MethodSettings& settings) const override {
+  std::unique_ptr<Evaluator> make_own(Device* device, const Surface* surface,
+                                      const MethodSettings& settings) const override {
     MixtureSettings mixture;
     mixture.elements = settings_as<BeckmannSettings>(settings).elements;
     return std::make_unique<BeckmannEvaluator>(*device, *surface, mixture);

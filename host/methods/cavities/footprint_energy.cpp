@@ -83,7 +83,9 @@ Losses halved(const Losses& fine, int width, int height) {
   return coarse;
 }
 
-using Moments = FootprintPyramid<5>;  // E[p], E[q], E[p^2], E[pq], E[q^2] of slopes
+/// E[p], E[q], E[p^2], E[pq], E[q^2] of slopes; in double precision, since variances are small differences of
+/// these.
+using Moments = FootprintPyramid<5, double>;
 
 Moments moments_of(const Surface& surface) {
   constexpr int side = Moments::kFirstSide;
@@ -100,7 +102,7 @@ Moments moments_of(const Surface& surface) {
         products << slope.x(), slope.y(), slope.x() * slope.x(), slope.x() * slope.y(), slope.y() * slope.y();
         sums += products;
       }
-      finest.square(column, row) = (sums / (side * side)).cast<float>();
+      finest.square(column, row) = sums / (side * side);
     }
   });
   moments.average_up();
@@ -116,7 +118,7 @@ FootprintEnergy::FootprintEnergy(const Surface& surface)
     const std::vector<Moments::Square>& from = moments.levels()[n].squares;
     std::vector<Pyramid::Square>& to = pyramid_.levels()[n].squares;
     tbb::parallel_for(std::size_t{0}, from.size(), [&](std::size_t k) {
-      const Eigen::Array<double, 5, 1> m = from[k].cast<double>();
+      const Moments::Square& m = from[k];
       const double xx = m[2] - m[0] * m[0], xy = m[3] - m[0] * m[1], yy = m[4] - m[1] * m[1];
       const double middle = 0.5 * (xx + yy), root = std::hypot(0.5 * (xx - yy), xy);
       const double cosine = root > 0 ? 0.5 * (xx - yy) / root : 1, sine = root > 0 ? xy / root : 0;

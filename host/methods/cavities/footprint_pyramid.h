@@ -9,11 +9,11 @@
 namespace mica::host {
 
 /// Averages of some numbers of a map over squares of 4, 8, ... texels, a mip map of which footprints of any
-/// shape are interpolated. @tparam kChannels numbers a texel.
-template <int kChannels>
+/// shape are interpolated. @tparam kChannels numbers a texel, of type Number.
+template <int kChannels, typename Number = float>
 class FootprintPyramid {
  public:
-  using Square = Eigen::Array<float, kChannels, 1>;
+  using Square = Eigen::Array<Number, kChannels, 1>;
   static constexpr int kFirstSide = 4;  ///< texels a side of the finest squares
 
   struct Level {

@@ -54,8 +54,8 @@ class GaussiansMethod : public Method {
         fmt::format("gaussians/gaussians.cl -DMICA_INTERPOLATION={}", static_cast<int>(asked.interpolation))};
   }
 
-  std::unique_ptr<Evaluator> make(Device* device, const Surface* surface,
-                                  const MethodSettings& settings) const override {
+  std::unique_ptr<Evaluator> make_own(Device* device, const Surface* surface,
+                                      const MethodSettings& settings) const override {
     return std::make_unique<GaussianEvaluator>(*device, *surface, mixture_of(settings));
   }
 

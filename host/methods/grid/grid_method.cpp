@@ -64,8 +64,8 @@ class GridMethod : public Method {
     return {};
   }
 
-  std::unique_ptr<Evaluator> make(Device* device, const Surface*,
-                                  const MethodSettings& settings) const override {
+  std::unique_ptr<Evaluator> make_own(Device* device, const Surface*,
+                                      const MethodSettings& settings) const override {
     const GlintsDescription& glints = glints_of(settings);
     return std::make_unique<GridEvaluator>(*device, grid_of(glints), std::nullopt, kGridBatchQueries,
                                            glint_features(glints));

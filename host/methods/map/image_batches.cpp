@@ -80,8 +80,6 @@ void ImageBatches::draw_batch(const mica_pyramid_query* queries, std::size_t cou
     launch(device_, kernel_, size, input, static_cast<cl_int>(bands), on_device, grid_, structure_, output);
     device_.queue().enqueueReadBuffer(output, CL_TRUE, 0, squares.size() * sizeof(float), squares.data());
   });
-  if (!std::all_of(squares.begin(), squares.end(), [](float value) { return std::isfinite(value); }))
-    throw DeviceError("drawing by " + method_ + ": a density is not finite");
   tbb::parallel_for(std::size_t{0}, count, [&](std::size_t n) {
     unfold(squares.data() + n * image_floats, window, on_device.squares, images + n * window.count());
   });

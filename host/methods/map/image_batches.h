@@ -18,7 +18,7 @@ class ImageBatches {
   ImageBatches(Device& device, const device_types::mica_map_grid& grid, std::vector<cl::Buffer> structure,
                const std::string& method, const std::string& options, WaveForm wave_form);
 
-  /// One image a query, whose half vector does not matter; 0 off the disk, finite and >= 0. Throws
+  /// One image a query, whose half vector does not matter; 0 off the disk, else >= 0 or not finite. Throws
   /// DeviceError.
   std::vector<float> draw(const std::vector<device_types::mica_pyramid_query>& queries,
                           const ImageWindow& window);

@@ -1,5 +1,6 @@
 #include "host/methods/pyramid/element_tree.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -116,13 +117,33 @@ void put(Word word, int place, std::int16_t* record) {
   std::memcpy(record + 2 * place, &word, sizeof word);
 }
 
+/// A part of the least that a query adds to an element's covariance before it divides by it: its footprint,
+/// and its lobe. Written covariances may be that much short of positive semidefinite.
+struct CovarianceMargins {
+  double position, normal;  ///< variances
+
+  explicit CovarianceMargins(const GroupShape& group) {
+    // Footprints of sigma >= block / sqrt(8) and roughnesses >= cell / 2 read a level; half of that.
+    position = group.block_texels * group.block_texels / 16;
+    normal = group.cell_width * group.cell_width / 8;
+  }
+  bool hold(const Eigen::Matrix4d& covariance) const {
+    const Eigen::Vector4d scale =
+        Eigen::Vector4d(position, position, normal, normal).cwiseSqrt().cwiseInverse();
+    const Eigen::Matrix4d widened =
+        scale.asDiagonal() * covariance * scale.asDiagonal() + Eigen::Matrix4d::Identity();
+    return widened.llt().info() == Eigen::Success;
+  }
+};
+
 /// Writes up to sixteen elements; missing ones get no weight.
 /// @tparam Number std::int16_t or std::int8_t, which the fields are of.
 template <typename Number>
 class RecordWriter {
  public:
-  RecordWriter(const Element* first, std::size_t count, std::int16_t* record)
-      : first_(first), count_(count), record_(record), means_(first, count) {}
+  RecordWriter(const Element* first, std::size_t count, const CovarianceMargins& margins,
+               std::int16_t* record)
+      : first_(first), count_(count), margins_(margins), record_(record), means_(first, count) {}
 
   void write() {
     write_means();
@@ -130,19 +151,15 @@ class RecordWriter {
     const double p_unit = put_unit(largest_covariance<0, 0>(), MICA_RECORD_POSITION_UNIT),
                  n_unit = put_unit(largest_covariance<2, 2>(), MICA_RECORD_NORMAL_UNIT),
                  k_unit = put_unit(largest_covariance<2, 0>(), MICA_RECORD_CROSS_UNIT);
-    const auto write_covariance = [this](int index, int row, int column, double unit) {
-      for (std::size_t n = 0; n < count_; ++n) field(index, n, first_[n].covariance(row, column) / unit);
-    };
-    write_covariance(MICA_ELEMENT_XX, 0, 0, p_unit);
-    write_covariance(MICA_ELEMENT_XY, 0, 1, p_unit);
-    write_covariance(MICA_ELEMENT_YY, 1, 1, p_unit);
-    write_covariance(MICA_ELEMENT_SX, 2, 0, k_unit);
-    write_covariance(MICA_ELEMENT_SY, 2, 1, k_unit);
-    write_covariance(MICA_ELEMENT_TX, 3, 0, k_unit);
-    write_covariance(MICA_ELEMENT_TY, 3, 1, k_unit);
-    write_covariance(MICA_ELEMENT_SS, 2, 2, n_unit);
-    write_covariance(MICA_ELEMENT_ST, 2, 3, n_unit);
-    write_covariance(MICA_ELEMENT_TT, 3, 3, n_unit);
+    for (std::size_t n = 0; n < count_; ++n) {
+      // Beside much wider ones, what rounding leaves of an element may be no covariance. Its axes then give
+      // way, and at last are those of the coordinates.
+      for (const double correlated : {1.0, 0.75, 0.5, 0.25, 0.0}) {
+        Eigen::Matrix4d covariance = correlated * first_[n].covariance;
+        covariance.diagonal() = first_[n].covariance.diagonal();
+        if (margins_.hold(write_covariance(n, covariance, p_unit, k_unit, n_unit))) break;
+      }
+    }
   }
 
  private:
@@ -182,6 +199,26 @@ class RecordWriter {
     }
   }
 
+  /// The covariance as it is written.
+  Eigen::Matrix4d write_covariance(std::size_t n, const Eigen::Matrix4d& covariance, double p_unit,
+                                   double k_unit, double n_unit) {
+    Eigen::Matrix4d written;
+    const auto write = [&](int index, int row, int column, double unit) {
+      written(row, column) = written(column, row) = unit * field(index, n, covariance(row, column) / unit);
+    };
+    write(MICA_ELEMENT_XX, 0, 0, p_unit);
+    write(MICA_ELEMENT_XY, 0, 1, p_unit);
+    write(MICA_ELEMENT_YY, 1, 1, p_unit);
+    write(MICA_ELEMENT_SX, 2, 0, k_unit);
+    write(MICA_ELEMENT_SY, 2, 1, k_unit);
+    write(MICA_ELEMENT_TX, 3, 0, k_unit);
+    write(MICA_ELEMENT_TY, 3, 1, k_unit);
+    write(MICA_ELEMENT_SS, 2, 2, n_unit);
+    write(MICA_ELEMENT_ST, 2, 3, n_unit);
+    write(MICA_ELEMENT_TT, 3, 3, n_unit);
+    return written;
+  }
+
   template <int row, int column>
   double largest_covariance() const {
     double largest = 0;
@@ -207,6 +244,7 @@ class RecordWriter {
 
   const Element* first_;
   std::size_t count_;
+  const CovarianceMargins& margins_;
   std::int16_t* record_;
   MeanBox means_;
 };
@@ -291,6 +329,7 @@ ElementTree build_element_tree(const GroupShape& group, const std::vector<CellMo
     elements.push_back(element);
   }
   CompactOrder(&elements, group);
+  const CovarianceMargins margins(group);
   ElementTree tree;
   tree.elements = elements.size();
   std::vector<ElementBound> bounds;
@@ -299,9 +338,9 @@ ElementTree build_element_tree(const GroupShape& group, const std::vector<CellMo
     const std::size_t at = tree.records.size();
     tree.records.resize(at + record_stride(group.record_bits));
     if (group.record_bits == 16)
-      RecordWriter<std::int16_t>(&elements[first], count, &tree.records[at]).write();
+      RecordWriter<std::int16_t>(&elements[first], count, margins, &tree.records[at]).write();
     else
-      RecordWriter<std::int8_t>(&elements[first], count, &tree.records[at]).write();
+      RecordWriter<std::int8_t>(&elements[first], count, margins, &tree.records[at]).write();
     ElementBound bound;
     for (std::size_t n = first; n < first + count; ++n) bound.add(elements[n]);
     tree.largest_variance = std::max(tree.largest_variance, bound.variance_position);

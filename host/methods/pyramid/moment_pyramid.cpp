@@ -4,8 +4,10 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <map>
 
 #include "host/methods/pyramid/cell_moments.h"
@@ -143,24 +145,29 @@ void build_moment_pyramid(const Surface& surface, const PyramidLevels& levels,
   }
 }
 
-ElementCounts estimate_elements(const Surface& surface, double cell_width, int block) {
+ElementCounts estimate_elements(const Surface& surface, double cell_width, int block, double most) {
   const int samples = std::clamp(kSampledTexels / block, 1, 8);  // a side: blocks spread over the map
   const NormalCells cells(surface, cell_width);
   const int columns = (surface.width() + block - 1) / block, rows = (surface.height() + block - 1) / block;
   const int sampled_columns = std::min(columns, samples), sampled_rows = std::min(rows, samples);
-  std::vector<ElementCounts> counts(static_cast<std::size_t>(sampled_columns) * sampled_rows);
-  ThreadMoments moments([&] { return BlockMoments(surface, cells); });
-  tbb::parallel_for(std::size_t{0}, counts.size(), [&](std::size_t n) {
+  const std::size_t samples_taken = static_cast<std::size_t>(sampled_columns) * sampled_rows;
+  const double blocks_a_sample = static_cast<double>(columns) * rows / static_cast<double>(samples_taken);
+  // Whole numbers, whose sums do not depend on their order.
+  std::atomic<std::int64_t> whole = 0, compact = 0;
+  const auto above_most = [&](const std::atomic<std::int64_t>& sum) {
+    return blocks_a_sample * static_cast<double>(sum) > most;
+  };
+  tbb::enumerable_thread_specific<CellCounter> counters([&] { return CellCounter(surface, cells); });
+  tbb::parallel_for(std::size_t{0}, samples_taken, [&](std::size_t n) {
+    if (above_most(whole) && above_most(compact)) return;
     const int column = static_cast<int>(n % sampled_columns) * columns / sampled_columns;
     const int row = static_cast<int>(n / sampled_columns) * rows / sampled_rows;
-    std::vector<CellMoments> parts = moments.local().block(column * block, row * block, block);
-    counts[n].whole = static_cast<double>(parts.size());
-    counts[n].compact = static_cast<double>(without_light_cells(cells, std::move(parts)).size());
+    const CellCount count = counters.local().count(column * block, row * block, block);
+    whole += count.whole, compact += count.compact;
   });
-  ElementCounts sum;
-  for (const ElementCounts& count : counts) sum.whole += count.whole, sum.compact += count.compact;
-  const double blocks_a_sample = static_cast<double>(columns) * rows / static_cast<double>(counts.size());
-  return {blocks_a_sample * sum.whole, blocks_a_sample * sum.compact};
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  if (above_most(whole) && above_most(compact)) return {infinity, infinity};
+  return {blocks_a_sample * static_cast<double>(whole), blocks_a_sample * static_cast<double>(compact)};
 }
 
 namespace {
@@ -168,8 +175,12 @@ namespace {
 /// What levels of one cell width take, each found when it is asked for.
 class LevelEstimates {
  public:
-  LevelEstimates(const Surface& surface, double cell_width)
-      : surface_(surface), cell_width_(cell_width), size_(std::max(surface.width(), surface.height())) {}
+  /// @param room bytes: what does not fit into it is infinite.
+  LevelEstimates(const Surface& surface, double cell_width, double room)
+      : surface_(surface),
+        cell_width_(cell_width),
+        room_(room),
+        size_(std::max(surface.width(), surface.height())) {}
 
   /// Of a level and all coarser ones.
   double bytes(int finest, bool compact) {
@@ -177,7 +188,7 @@ class LevelEstimates {
     int block = 2 * finest;
     for (; block <= kSampledTexels && block < 2 * size_; block *= 2) sum += elements(block, compact);
     if (block < 2 * size_) sum += elements(block / 2, compact) / 3;  // a quarter each, or few
-    return sum / 16 * (2.0 * record_stride(compact ? 8 : 16) + 2.0 * MICA_PYRAMID_NODE_STRIDE / 15);
+    return sum * element_bytes(compact);
   }
   /// Whether sixteen neighbouring elements of a group lie within eight cells or so of each other: 8 bits tell
   /// farther ones hardly apart, and a light one may be all there is.
@@ -187,14 +198,17 @@ class LevelEstimates {
   }
 
  private:
+  static double element_bytes(bool compact) {
+    return (2.0 * record_stride(compact ? 8 : 16) + 2.0 * MICA_PYRAMID_NODE_STRIDE / 15) / 16;
+  }
   double elements(int block, bool compact) {
     const auto [found, added] = elements_.try_emplace(block);
-    if (added) found->second = estimate_elements(surface_, cell_width_, block);
+    if (added) found->second = estimate_elements(surface_, cell_width_, block, room_ / element_bytes(true));
     return compact ? found->second.compact : found->second.whole;
   }
 
   const Surface& surface_;
-  double cell_width_;
+  double cell_width_, room_;
   int size_;
   std::map<int, ElementCounts> elements_;
 };
@@ -202,8 +216,8 @@ class LevelEstimates {
 }  // namespace
 
 PyramidLevels levels_that_fit(const Surface& surface, double cell_width, std::size_t bytes) {
-  LevelEstimates estimates(surface, cell_width);
   const auto room = static_cast<double>(bytes);
+  LevelEstimates estimates(surface, cell_width, room);
   for (int octave = kFinestBlock; octave < std::max(surface.width(), surface.height()); octave *= 2) {
     for (const int block : {octave, octave / 2 * 3}) {
       if (estimates.bytes(block, false) <= room) return {cell_width, block, false};

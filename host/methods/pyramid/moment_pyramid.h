@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <vector>
 
 #include "host/surface/surface.h"
@@ -60,6 +61,8 @@ void build_moment_pyramid(const Surface& surface, const PyramidLevels& levels,
 struct ElementCounts {
   double whole = 0, compact = 0;
 };
-ElementCounts estimate_elements(const Surface& surface, double cell_width, int block);
+/// Infinite where both are above `most`, which is told by as few blocks as it takes.
+ElementCounts estimate_elements(const Surface& surface, double cell_width, int block,
+                                double most = std::numeric_limits<double>::infinity());
 
 }  // namespace mica::host

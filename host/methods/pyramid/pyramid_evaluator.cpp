@@ -90,6 +90,12 @@ std::unique_ptr<PendingDensities> PyramidEvaluator::start_turned(const std::vect
   return all;
 }
 
+std::vector<float> PyramidEvaluator::count_elements(const std::vector<Query>& queries) {
+  std::vector<Query> places;
+  for (const Query& query : queries) places.push_back(has_first_order(query) ? place_seen(query) : query);
+  return start(places, true)->wait();
+}
+
 std::unique_ptr<PendingDensities> PyramidEvaluator::start(const std::vector<Query>& queries, bool counting) {
   LevelsOfQueries levels = levels_of(queries, counting);
   auto all = std::make_unique<BlendedDensities>(queries.size());
@@ -228,6 +234,7 @@ int PyramidEvaluator::whole_map(int cell_class) const {
 }
 
 std::optional<PyramidChoice> PyramidEvaluator::choose(const Query& query) {
+  if (has_first_order(query)) return choose(place_seen(query));
   add_levels(query.roughness);
   const std::optional<PyramidShares> found = shares(query);
   return found ? std::optional(found->choice) : std::nullopt;

@@ -38,10 +38,9 @@ class PyramidEvaluator : public Evaluator {
   double build_seconds() const override;
   double device_seconds() const override;
 
-  /// Numbers of elements that queries sum; of those that go to the texels, of what their kernel counts.
-  std::vector<float> count_elements(const std::vector<Query>& queries) {
-    return start(queries, true)->wait();
-  }
+  /// Numbers of elements that queries sum; of those that go to the texels, of what their kernel counts. Of
+  /// queries with a first order those under the places that they see.
+  std::vector<float> count_elements(const std::vector<Query>& queries);
 
   /// The level that a query reads, none: the texels.
   std::optional<PyramidChoice> choose(const Query& query);

@@ -23,8 +23,8 @@ class PyramidMethod : public Method {
             0, "pyramid/pyramid.cl"};
   }
 
-  std::unique_ptr<Evaluator> make(Device* device, const Surface* surface,
-                                  const MethodSettings&) const override {
+  std::unique_ptr<Evaluator> make_own(Device* device, const Surface* surface,
+                                      const MethodSettings&) const override {
     return std::make_unique<PyramidEvaluator>(*device, *surface);
   }
 };

@@ -66,8 +66,8 @@ class ReferenceMethod : public Method {
     return {0, 0, "none"};
   }
 
-  std::unique_ptr<Evaluator> make(Device*, const Surface* surface,
-                                  const MethodSettings& settings) const override {
+  std::unique_ptr<Evaluator> make_own(Device*, const Surface* surface,
+                                      const MethodSettings& settings) const override {
     return std::make_unique<ReferenceEvaluator>(
         *surface, settings.tolerance.value_or(reference::Oracle::default_tolerance));
   }

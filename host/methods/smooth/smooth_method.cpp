@@ -26,8 +26,8 @@ class SmoothMethod : public Method {
             "smooth/smooth.cl"};
   }
 
-  std::unique_ptr<Evaluator> make(Device* device, const Surface* surface,
-                                  const MethodSettings& settings) const override {
+  std::unique_ptr<Evaluator> make_own(Device* device, const Surface* surface,
+                                      const MethodSettings& settings) const override {
     MixtureSettings mixture;
     mixture.elements = settings_as<ElementSettings>(settings).elements;
     return std::make_unique<SmoothEvaluator>(*device, *surface, mixture);

@@ -35,8 +35,8 @@ class TrianglesMethod : public Method {
         fmt::format("triangles/triangles.cl -DMICA_INTERPOLATION={}", static_cast<int>(asked.interpolation))};
   }
 
-  std::unique_ptr<Evaluator> make(Device* device, const Surface* surface,
-                                  const MethodSettings&) const override {
+  std::unique_ptr<Evaluator> make_own(Device* device, const Surface* surface,
+                                      const MethodSettings&) const override {
     return std::make_unique<TriangleEvaluator>(*device, *surface);
   }
 

@@ -49,6 +49,15 @@ std::vector<Query> queries_of_8_texels(const Surface& surface, int count) {
   return queries;
 }
 
+/// The same whose half vector turns by half a lobe over a footprint's standard deviation.
+std::vector<Query> turning(std::vector<Query> queries) {
+  for (Query& query : queries) {
+    const double sigma_uv = std::sqrt(query.footprint.cov_uv(0, 0));
+    query.half_vector_turn = 0.5 * query.roughness / sigma_uv * Eigen::Matrix2d::Identity();
+  }
+  return queries;
+}
+
 std::unique_ptr<AutoEvaluator> calibrated(const Surface& surface, double tolerance,
                                           const std::vector<Query>& queries) {
   auto chooser = std::make_unique<AutoEvaluator>(device(), surface, tolerance);
@@ -73,6 +82,25 @@ TEST(Auto, KeepsItsToleranceOnQueriesThatItHasNotSeen) {
     }
     EXPECT_LE(relative_l2(chooser->evaluate(fresh), expected), tolerance);
   }
+}
+
+/// Queries with a first order are classes of their own, of which the wide ones are worth a pyramid as well.
+TEST(Auto, KeepsItsToleranceOnQueriesThatTurn) {
+  const Surface surface = spectrum();
+  const auto chooser = calibrated(surface, 0.01, turning(mixed_queries(surface, 300, 10)));
+  ASSERT_EQ(chooser->choices().size(), 3u);
+  for (const AutoChoice& choice : chooser->choices()) {
+    EXPECT_TRUE(choice.kind.first_order);
+    EXPECT_LE(choice.upper_bound, 0.01) << choice.evaluator;
+  }
+  EXPECT_EQ(chooser->choices().back().evaluator.find("pyramid"), 0u) << chooser->choices().back().evaluator;
+  const std::vector<Query> fresh = turning(mixed_queries(surface, 60, 11));
+  std::vector<double> expected;
+  for (const reference::OracleResult& result : reference::Oracle(surface, 1e-5).evaluate(fresh))
+    expected.push_back(result.density);
+  const double error = relative_l2(chooser->evaluate(fresh), expected);
+  EXPECT_LE(error, 0.01);
+  EXPECT_GT(error, 1e-4);  // what `triangles` would be off by: it was not they who answered
 }
 
 TEST(Auto, TakesThePyramidForLargeFootprintsAndTexelsForSmallOnes) {

@@ -55,7 +55,7 @@ double scattered(PatchBrdf* brdf, const ViewQuery& view) {
 /// A map of one normal is a smooth lobe about it: from above it mirrors all light, whatever its tilt.
 TEST(PatchEnergy, AMapOfOneNormalLosesNothingFromAbove) {
   for (const double slope : {0.0, 0.25, 0.5}) {
-    const Eigen::Vector2d normal(-slope / std::sqrt(1 + slope * slope), 0);
+    const Eigen::Vector2d normal = -slope / std::sqrt(1 + slope * slope) * Eigen::Vector2d(0.8, -0.6);
     const Surface surface(16, 16, Interpolation::bilinear, std::vector<Eigen::Vector2d>(16 * 16, normal));
     for (const Masking masking : {Masking::exact, Masking::filtered}) {
       const auto brdf = beckmanns(surface, masking);

@@ -37,6 +37,16 @@ TEST(FootprintEnergy, LosesNothingOnPlanes) {
   EXPECT_NEAR(FootprintEnergy(plane).lost({{}, Eigen::Vector3d::UnitZ(), 1e-5}), 0, 1e-6);
 }
 
+/// However steep: only how much slopes differ counts.
+TEST(FootprintEnergy, LosesOnSteepPlanesWhatItLosesOnFlatOnes) {
+  const auto lost = [](const Eigen::Vector2d& slope) {
+    const Surface plane(64, 48, Interpolation::bilinear,
+                        std::vector<Eigen::Vector2d>(64 * 48, disk_from_slope(slope)));
+    return FootprintEnergy(plane).lost({{}, Eigen::Vector3d(0.99995, 0, 0.01), 1e-5});
+  };
+  EXPECT_NEAR(lost({9.7, -7.3}), lost({0, 0}), 1e-7);
+}
+
 TEST(FootprintEnergy, StaysSmallAndSaysSo) {
   for (const int size : {4, 37, 256}) {
     const Surface surface(size, 4, Interpolation::bilinear, std::vector<Eigen::Vector2d>(size * 4, {0.1, 0}));

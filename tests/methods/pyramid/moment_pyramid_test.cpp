@@ -202,5 +202,27 @@ TEST(MomentPyramid, TakesTheFinestLevelsThatFit) {
   EXPECT_EQ(levels_that_fit(surface, 0.03, 1).finest_block, 512);
 }
 
+/// Counting needs no second moments.
+TEST(MomentPyramid, CountsTheCellsThatItWouldHave) {
+  // Its normals thin out away from their mean.
+  const Surface surface =
+      make_surface({"test", SpectrumSurface{64, 0.15, 8, 3}, Interpolation::bilinear}, nullptr);
+  double all = 0, heavy = 0;
+  for (const double width : {0.004, 0.02, 0.06}) {
+    const NormalCells cells(surface, width);
+    BlockMoments moments(surface, cells);
+    CellCounter counter(surface, cells);
+    for (const int corner : {0, 32}) {
+      std::vector<CellMoments> parts = moments.block(corner, corner, 32);
+      const CellCount count = counter.count(corner, corner, 32);
+      EXPECT_EQ(count.whole, static_cast<std::int64_t>(parts.size())) << width;
+      const std::size_t compact = without_light_cells(cells, std::move(parts)).size();
+      EXPECT_EQ(count.compact, static_cast<std::int64_t>(compact)) << width;
+      all += static_cast<double>(count.whole), heavy += static_cast<double>(compact);
+    }
+  }
+  EXPECT_LT(heavy, 0.95 * all) << "hardly a cell is light";
+}
+
 }  // namespace
 }  // namespace mica::host::moment_pyramid_test

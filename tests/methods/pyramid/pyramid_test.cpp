@@ -171,6 +171,17 @@ TEST(Pyramid, DropsOnlyWhatIsBelowTheCutoff) {
   EXPECT_LE(dropped, 2e-6);
 }
 
+/// Normals change by many cells a texel here, so that wide elements share a record with narrow ones: of these
+/// the record's numbers must still leave a covariance.
+TEST(Pyramid, AnswersSteepMaps) {
+  const Surface surface =
+      make_surface({"test", SpectrumSurface{32, 5, 2, 1}, Interpolation::bilinear}, nullptr);
+  PyramidEvaluator pyramid(device(), surface);
+  const std::vector<Query> queries = random_queries(surface, 14, 14, 0.0029, 400);
+  ASSERT_TRUE(pyramid.choose(queries.front()));
+  for (const float density : pyramid.evaluate(queries)) ASSERT_TRUE(std::isfinite(density));
+}
+
 TEST(Pyramid, IntegratesToOne) {
   constexpr double roughness = 0.02;
   constexpr int side = 150;  // grid points across [-1, 1]: finer than the roughness

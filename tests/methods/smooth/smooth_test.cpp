@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "host/base/constants.h"
+#include "host/base/random.h"
 #include "host/methods/smooth/smooth_evaluator.h"
 #include "host/reference/beckmann_mixture.h"
 #include "host/surface/texel_footprint.h"
@@ -91,6 +93,44 @@ TEST(Smooth, SeesTheWholeMap) {
   lobe.covariance += 0.09 * Eigen::Matrix2d::Identity();
   EXPECT_NEAR(smooth.evaluate({query})[0], reference::BeckmannMixture::density({lobe}, {0, 0}),
               0.03 * reference::BeckmannMixture::density({lobe}, {0, 0}));
+}
+
+/// The integral of D over the disk.
+double integral(SmoothEvaluator* smooth, const Footprint& footprint, double roughness) {
+  const int side = static_cast<int>(std::ceil(4 / roughness));  // grid points half a roughness apart
+  std::vector<Query> queries;
+  for (int n = 0; n < side * side; ++n) {
+    const Eigen::Vector2d s((2.0 * (n % side) + 1) / side - 1, (2.0 * (n / side) + 1) / side - 1);
+    if (s.norm() < 1) queries.push_back({footprint, s, roughness});
+  }
+  double sum = 0;
+  for (const float density : smooth->evaluate(queries)) sum += density;
+  return sum * 4 / (side * side);
+}
+
+/// A covariance of slopes that are all alike, or nearly so under a close footprint, is no small difference of
+/// large squares.
+TEST(Smooth, IntegratesToOneWhereSlopesHardlyDiffer) {
+  for (const Eigen::Vector2d& normal :
+       {Eigen::Vector2d(0.098, -0.059), Eigen::Vector2d(-0.4, 0.3), Eigen::Vector2d(0.5, 0.6)}) {
+    const Surface plane(32, 32, Interpolation::bilinear, std::vector<Eigen::Vector2d>(32 * 32, normal));
+    SmoothEvaluator smooth(device(), plane);
+    for (const double sigma : {0.7, 4.0, 200.0})
+      EXPECT_NEAR(integral(&smooth, make_footprint(plane, {0.4, 0.6}, sigma, sigma, 0), 0.02), 1, 5e-3)
+          << normal.transpose() << ", footprint " << sigma;
+    // A lobe this narrow is the same in slopes and on the disk.
+    const double peak = 1 / (2 * kPi * 1e-3 * 1e-3);
+    const Query query{make_footprint(plane, {0.4, 0.6}, 2, 2, 0), normal, 1e-3};
+    EXPECT_NEAR(smooth.evaluate({query})[0], peak, 0.01 * peak) << normal.transpose();
+  }
+  const Surface flakes =
+      make_surface({"flakes", FlakesSurface{64, 12, 0.2, 5}, Interpolation::nearest}, nullptr);
+  SmoothEvaluator smooth(device(), flakes);
+  for (int n = 0; n < 12; ++n) {
+    const Footprint footprint =
+        make_footprint(flakes, {random_unit(1, 0, n), random_unit(1, 1, n)}, 0.8, 0.8, 0);
+    EXPECT_NEAR(integral(&smooth, footprint, 0.02), 1, 5e-3) << n;
+  }
 }
 
 }  // namespace

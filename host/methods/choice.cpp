@@ -1,0 +1,17 @@
+#include "host/methods/choice.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace mica::host {
+
+std::string words(const AutoChoice& choice) {
+  return fmt::format(
+      "footprints of about {:.3g} texels{}, roughness from {:.3g}: {}; relative L2 {:.2g}, at most {:.2g}",
+      std::exp2(choice.kind.size), choice.kind.first_order ? " with a first order" : "",
+      0.02 * std::exp2(0.5 * choice.kind.roughness), choice.evaluator, choice.relative_l2,
+      choice.upper_bound);
+}
+
+}  // namespace mica::host

@@ -1,0 +1,35 @@
+# Whoever lacks the C++ packages is told so in one sentence, before CMake's own words about the first of them.
+
+# mica_require_packages(): the packages of scripts/install that are libraries.
+function(mica_require_packages)
+  set(missing)
+  foreach(package Eigen3 fmt spdlog TBB embree tomlplusplus CLI11 nlohmann_json OpenCL Boost PkgConfig)
+    find_package(${package} QUIET)
+    if(NOT ${package}_FOUND)
+      list(APPEND missing ${package})
+    endif()
+  endforeach()
+  if(PkgConfig_FOUND)
+    foreach(package libxxhash OpenImageIO)
+      pkg_check_modules(mica_needs_${package} QUIET ${package})
+      if(NOT mica_needs_${package}_FOUND)
+        list(APPEND missing ${package})
+      endif()
+    endforeach()
+  endif()
+  if(missing)
+    mica_debian_packages(packages)
+    list(JOIN missing ", " missing)
+    message(FATAL_ERROR "Mica is compiled on your machine and lacks ${missing} here: on Debian 12 install what it needs with\n"
+                        "  sudo apt-get install ${packages}\n")
+  endif()
+endfunction()
+
+# mica_debian_packages(RESULT): what scripts/install installs to build and to run.
+function(mica_debian_packages result)
+  file(READ ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/../scripts/install text)
+  string(REGEX MATCH "\npackages=\\(([^)]*)\\)" found "${text}")
+  string(STRIP "${CMAKE_MATCH_1}" packages)
+  string(REGEX REPLACE "[ \n]+" " " packages "${packages}")
+  set(${result} ${packages} PARENT_SCOPE)
+endfunction()
