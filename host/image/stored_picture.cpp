@@ -3,7 +3,9 @@
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
+#include <array>
 #include <cstring>
+#include <fstream>
 
 #include "host/base/hash.h"
 #include "host/image/image_header.h"
@@ -12,6 +14,17 @@
 namespace mica::host {
 namespace {
 
+/// The pixels of a PNG may be there and what follows them not; its last chunk is always the same.
+void check_end(const std::string& path) {
+  constexpr char last_chunk[] = "\0\0\0\0IEND\xae\x42\x60\x82";
+  constexpr std::size_t size = sizeof last_chunk - 1;
+  std::array<char, size> found{};
+  std::ifstream file(path, std::ios::binary);
+  file.seekg(-static_cast<std::streamoff>(size), std::ios::end);
+  if (!file.read(found.data(), size) || std::memcmp(found.data(), last_chunk, size) != 0)
+    throw FileError(fmt::format("{}: is cut short", path));
+}
+
 std::unique_ptr<OIIO::ImageInput> open_stored(const std::string& path) {
   const ImageFileFormat format = identify_image(path);
   if (format.reader == "openexr")
@@ -19,6 +32,7 @@ std::unique_ptr<OIIO::ImageInput> open_stored(const std::string& path) {
   else if (format.reader != "png")
     throw FileError(fmt::format("{}: found a file of the format {}; expected a picture that Mica wrote", path,
                                 format.reader));
+  if (format.reader == "png") check_end(path);
   std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path);
   if (!input) throw FileError(fmt::format("{}: cannot be read: {}", path, OIIO::geterror()));
   const OIIO::ImageSpec& spec = input->spec();

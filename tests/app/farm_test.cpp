@@ -84,7 +84,7 @@ TEST_F(FarmCommand, CompilesOnceWhatManyNeed) {
   const std::string render = "'" MICA_PROGRAM "' render job.toml --frames 0 --quiet -o ";
   std::string together = "true; ";
   for (const char* n : {"1", "2", "3"}) together += render + n + ".exr --json-log " + n + ".jsonl & ";
-  mica("--version", "export MICA_CACHE_DIR=kernels; " + together + " wait;");
+  mica("--version", "unset POCL_CACHE_DIR; export MICA_CACHE_DIR=kernels; " + together + " wait;");
   int compiled = 0, used = 0;
   for (const char* n : {"1.jsonl", "2.jsonl", "3.jsonl"}) {
     std::istringstream lines(bytes(path(n)));
@@ -94,16 +94,17 @@ TEST_F(FarmCommand, CompilesOnceWhatManyNeed) {
       compiled += event.at("compiled").get<int>(), used += event.at("of").get<int>();
     }
   }
-  EXPECT_EQ(compiled, 1);
-  EXPECT_EQ(used, 3);
+  EXPECT_GT(compiled, 0);
+  EXPECT_EQ(used, 3 * compiled);
+  const std::string all = std::to_string(compiled) + " programs";
   EXPECT_TRUE(bytes(path("1.0000.exr")) == bytes(path("3.0000.exr")));
   EXPECT_TRUE(std::filesystem::exists(path("kernels/pocl")));
-  const Outcome warm = mica("warm job.toml", "MICA_CACHE_DIR=kernels");
-  EXPECT_NE(warm.out.find(": 0 of 1 programs"), std::string::npos) << warm.out;
+  const Outcome warm = mica("warm job.toml", "unset POCL_CACHE_DIR; MICA_CACHE_DIR=kernels");
+  EXPECT_NE(warm.out.find(": 0 of " + all), std::string::npos) << warm.out;
   // Kernels that others could change are not run.
   std::filesystem::permissions(path("kernels"), std::filesystem::perms(0777));
-  const Outcome open = mica("warm job.toml", "MICA_CACHE_DIR=kernels");
-  EXPECT_NE(open.out.find(": 1 of 1 programs"), std::string::npos) << open.out;
+  const Outcome open = mica("warm job.toml", "unset POCL_CACHE_DIR; MICA_CACHE_DIR=kernels");
+  EXPECT_NE(open.out.find(": " + std::to_string(compiled) + " of " + all), std::string::npos) << open.out;
 }
 
 TEST_F(FarmCommand, ChoosesDevices) {
