@@ -73,9 +73,10 @@ Probe probe_of(const SeenPoint& point) {
   probe.uv = point.uv, probe.duv = point.duv;
   probe.normal = point.frame.z;
   for (const SeenLamp& lamp : point.lamps)
-    probe.lamps.push_back({lamp.shines, lamp.half_vector, lamp.seen.roughness,
-                           lamp.shines ? Color(lamp.seen.glint_weight.cwiseProduct(lamp.incident.irradiance))
-                                       : Color(Color::Zero())});
+    probe.lamps.push_back({lamp.is_above, lamp.visible, lamp.half_vector, lamp.seen.roughness,
+                           lamp.visible > 0
+                               ? Color(lamp.seen.glint_weight.cwiseProduct(lamp.incident.irradiance))
+                               : Color(Color::Zero())});
   return probe;
 }
 
@@ -96,9 +97,9 @@ const std::array<Eigen::Vector2d, PixelFit::kRays>& PixelFit::offsets() {
   return all;
 }
 
-PixelFit::PixelFit(const std::array<const Probe*, kRays>& probes) : probes_(probes) {
+PixelFit::PixelFit(std::array<const Probe*, kRays> probes) : probes_(probes) {
   Values u, v, u_residual, v_residual;
-  const Probe& middle = *probes[0];
+  const Probe& middle = *probes_[0];
   for (std::size_t n = 0; n < kRays; ++n) {
     // The map repeats: of all that a ray may mean the one nearest to where the middle's uv lead.
     const Eigen::Vector2d expected = middle.duv * offsets()[n];
@@ -139,6 +140,19 @@ Footprint PixelFit::footprint(const FilterSum& filter) const {
   duv << u_.slope.transpose(), v_.slope.transpose();
   const Eigen::Vector2d mean(u_.mean({0, 0}, cov), v_.mean({0, 0}, cov));
   return {wrap(probes_[0]->uv + mean), footprint_covariance(duv, std::sqrt(variance))};
+}
+
+bool PixelFit::sees(std::size_t lamp) const {
+  return std::any_of(probes_.begin(), probes_.end(),
+                     [&](const Probe* probe) { return probe->lamps[lamp].visible > 0; });
+}
+
+double PixelFit::penumbra_residual(std::size_t lamp) const {
+  Values visible, residual;
+  for (std::size_t n = 0; n < kRays; ++n)
+    visible[static_cast<Eigen::Index>(n)] = probes_[n]->lamps[lamp].visible;
+  fit(visible, &residual);
+  return std::sqrt(weighted(residual, residual));
 }
 
 PixelFit::LampFit PixelFit::fit_lamp(std::size_t lamp) const {
@@ -196,7 +210,10 @@ bool PixelFit::query_of(const Gaussian& part, const LampFit& lamp, GlintQuery* q
 
   const Color weight(lamp.red.mean(mean, part.cov), lamp.green.mean(mean, part.cov),
                      lamp.blue.mean(mean, part.cov));
-  if (!(weight.sum() > 0)) return false;
+  if (!(weight.sum() > 0)) {  // where a penumbra ends
+    query->weight.setZero();
+    return true;
+  }
   const Eigen::Vector2d weight_slope =
       lamp.red.slope_at(mean) + lamp.green.slope_at(mean) + lamp.blue.slope_at(mean);
   const Eigen::Vector2d shift = best_shift(axes, root, weight_slope / weight.sum());

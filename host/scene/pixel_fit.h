@@ -17,10 +17,11 @@ constexpr double kLeastTurn = 0.005;
 struct Probe {
   static constexpr std::uint64_t kNothing = ~std::uint64_t{0};
   struct Lamp {
-    bool shines = false;
+    bool is_above = false;  ///< as SeenLamp
+    double visible = 0;     ///< as SeenLamp
     Eigen::Vector2d half_vector{0, 0};
     double roughness = 0;
-    Color weight = Color::Zero();  ///< radiance per unit of D
+    Color weight = Color::Zero();  ///< radiance per unit of D, of what is visible
   };
   std::uint64_t surface = kNothing;  ///< the same number on a shape's part
   std::uint32_t material = 0;
@@ -64,13 +65,19 @@ class PixelFit {
   static const std::array<Eigen::Vector2d, kRays>& offsets();
 
   /// @param probes on one surface, facing the eye, or all on none.
-  explicit PixelFit(const std::array<const Probe*, kRays>& probes);
+  explicit PixelFit(std::array<const Probe*, kRays> probes);
 
   /// Mean over the filter of what needs no P-NDF.
   Color radiance(const FilterSum& filter) const;
   Footprint footprint(const FilterSum& filter) const;
 
-  /// Queries for a lamp that shines on all of the pixel, or false where they would not do.
+  /// Whether any of the rays sees the lamp above the horizon.
+  bool sees(std::size_t lamp) const;
+
+  /// How far the share of a lamp that is visible is from the fit's second order, root mean square.
+  double penumbra_residual(std::size_t lamp) const;
+
+  /// Queries for a lamp that is above the horizon in all of the pixel, or false where they would not do.
   /// @param normal_change E[(dn/du)' dn/du] of the map, per uv^2.
   bool ask(std::size_t lamp, const FilterSum& filter, const Eigen::Matrix2d& normal_change,
            const FitLimits& limits, std::vector<GlintQuery>* queries) const;
@@ -92,7 +99,7 @@ class PixelFit {
                              const Eigen::Vector2d& log_weight_slope) const;
   bool query_of(const Gaussian& part, const LampFit& lamp, GlintQuery* query) const;
 
-  const std::array<const Probe*, kRays>& probes_;
+  std::array<const Probe*, kRays> probes_;
   Quadratic u_, v_;
   double uv_residual2_uu_ = 0, uv_residual2_uv_ = 0, uv_residual2_vv_ = 0;
 };

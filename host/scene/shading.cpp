@@ -125,6 +125,12 @@ BounceFresnel::BounceFresnel(const Fresnel& fresnel, const Eigen::Vector3d& view
     : single(reflectance(fresnel, light.dot((view + light).normalized()))),
       multiple(reflectance(fresnel, view.z())) {}
 
+bool has_extent(const LightDescription& light) {
+  if (const auto* sphere = std::get_if<SphereLight>(&light)) return sphere->radius > 0;
+  if (const auto* disk = std::get_if<DiskLight>(&light)) return disk->radius > 0;
+  return false;
+}
+
 LightRay light_ray(const LightDescription& light, const Eigen::Vector3d& position,
                    const Eigen::Vector2d& sample) {
   return std::visit(MakeLightRay{position, sample}, light);

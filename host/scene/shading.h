@@ -42,6 +42,9 @@ struct BounceFresnel {
   Color single, multiple;
 };
 
+/// Whether a light is more than a point or a direction, so that its shadows have penumbras.
+bool has_extent(const LightDescription& light);
+
 /// Where a shadow ray goes: to a point of the light that `sample`, uniform on the unit square, chooses. For
 /// lights without extent, to their middle.
 struct LightRay {

@@ -6,23 +6,17 @@
 #include <algorithm>
 #include <cmath>
 
-#include "host/base/random.h"
 #include "host/scene/footprint.h"
-#include "host/scene/pixel_fit.h"
+#include "host/scene/light_samples.h"
+#include "host/scene/pixel_probes.h"
 #include "host/scene/wrap.h"
 
 namespace mica::host {
 namespace {
 
-/// Where on a light the shadow ray of a subpixel ends: all subpixels of a pixel cover the light evenly, in an
-/// order of the pixel's own, so that penumbras have no bands.
-Eigen::Vector2d shadow_sample(std::uint64_t pixel, int subpixel, int subpixels) {
-  const std::uint64_t hash = scramble_bits((pixel + 1) * kGoldenBits);
-  const double step = 1.0 / subpixels, unit = 1.0 / 4294967296.0;
-  const Eigen::Vector2d shift(unit * static_cast<double>(hash >> 32),
-                              unit * static_cast<double>(hash & 0xffffffffu));
-  return wrap(step * Eigen::Vector2d(subpixel % subpixels, subpixel / subpixels) + shift);
-}
+/// Of the share of a lamp that is seen, between a fit and its rays: these are off by 0.04 where half of it is
+/// seen, and by 0.3 on both sides of a shadow's edge.
+constexpr double kMostPenumbraResidual = 0.12;
 
 /// Sums of one pixel's AOVs over the samples that hit a shape.
 class PixelMeans {
@@ -73,27 +67,6 @@ void join(std::vector<RowQueries>* rows, std::vector<Item> RowQueries::*part, st
   }
 }
 
-/// A rectangle of items whose rows and columns may begin below zero.
-template <typename Item>
-class Rectangle {
- public:
-  Rectangle(int first_row, int rows, int first_column, int columns)
-      : first_row_(first_row),
-        first_column_(first_column),
-        columns_(columns),
-        items_(static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns)) {}
-  Item& at(int row, int column) { return items_[place(row, column)]; }
-  const Item& at(int row, int column) const { return items_[place(row, column)]; }
-
- private:
-  std::size_t place(int row, int column) const {
-    return static_cast<std::size_t>(row - first_row_) * static_cast<std::size_t>(columns_) +
-           static_cast<std::size_t>(column - first_column_);
-  }
-  int first_row_, first_column_, columns_;
-  std::vector<Item> items_;
-};
-
 /// What a fitted pixel shows; unset: it needs samples.
 struct FittedPixel {
   Color radiance = Color::Zero();
@@ -142,21 +115,11 @@ class BlockTracer {
 
   /// A number for a place of the image; inside it that of the pixel.
   std::uint64_t key(int row, int column) const {
-    const std::int64_t down = first_row_ + row, right = first_column_ + column;
-    if (down >= 0 && right >= 0 && right < image_width_)
-      return static_cast<std::uint64_t>(down) * static_cast<std::uint64_t>(image_width_) +
-             static_cast<std::uint64_t>(right);
-    return scramble_bits(static_cast<std::uint64_t>(down) * kGoldenBits + static_cast<std::uint64_t>(right));
-  }
-  Probe probe(double row, double column, std::uint64_t corner) const {
-    const std::uint64_t hash = random_bits(
-        key(static_cast<int>(std::floor(row)), static_cast<int>(std::floor(column))), kProbes, corner);
-    return probe_of(viewer_.look(first_column_ + column, first_row_ + row, shadow_sample(hash, 0, 1)));
+    return place_key(first_row_ + row, first_column_ + column, image_width_);
   }
 
   void fit_pixels();
   std::optional<FittedPixel> fit(int row, int column) const;
-  bool agree(int row, int column) const;
   void place_samples();
   void write_fits(int row, RowQueries* queries);
   void sample_row(int row, RowQueries* queries);
@@ -179,7 +142,6 @@ class BlockTracer {
     return row >= first_seen_ && row < end_seen_ && column >= 0 && column < width_ && !has_fit(row, column);
   }
 
-  static constexpr std::uint64_t kProbes = 0x70726f6265;  // a stream of its own
   const Viewer& viewer_;
   const PixelSettings& pixels_;
   const int image_width_, width_, first_row_, first_column_;
@@ -189,69 +151,37 @@ class BlockTracer {
   const int first_seen_, end_seen_;  // pixels of the image that the block has to know of
   TracedRows rows_;
   Fits fits_;
-  std::optional<Rectangle<Probe>> centers_, corners_;
+  std::optional<PixelProbes> probes_;
 };
 
-/// Two rays a pixel: at its centre and at a corner, which four pixels share.
 void BlockTracer::fit_pixels() {
-  const int first = first_seen_ - reach_, end = end_seen_ + reach_;
-  centers_.emplace(first, end - first, -reach_, width_ + 2 * reach_);
-  corners_.emplace(first, end + 1 - first, -reach_, width_ + 2 * reach_ + 1);
-  tbb::parallel_for(first, end + 1, [&](int row) {
-    for (int column = -reach_; column <= width_ + reach_; ++column) {
-      corners_->at(row, column) = probe(row, column, 1);
-      if (row < end && column < width_ + reach_)
-        centers_->at(row, column) = probe(row + 0.5, column + 0.5, 0);
-    }
-  });
+  probes_.emplace(viewer_,
+                  ProbedPixels{first_seen_, end_seen_, 0, width_, first_row_, first_column_, image_width_},
+                  reach_);
   tbb::parallel_for(first_seen_, end_seen_, [&](int row) {
     for (int column = 0; column < width_; ++column) fits_.at(row, column) = fit(row, column);
   });
-  centers_.reset(), corners_.reset();
-}
-
-/// Whether all rays within the filter's reach meet one surface, and each lamp shines on all or none of them.
-bool BlockTracer::agree(int row, int column) const {
-  const Probe& middle = centers_->at(row, column);
-  const auto is_alike = [&](const Probe& probe) {
-    if (probe.surface != middle.surface || probe.faces_eye != middle.faces_eye) return false;
-    for (std::size_t n = 0; n < probe.lamps.size(); ++n)
-      if (probe.lamps[n].shines != middle.lamps[n].shines) return false;
-    return true;
-  };
-  for (int down = -reach_; down <= reach_ + 1; ++down)
-    for (int right = -reach_; right <= reach_ + 1; ++right) {
-      if (!is_alike(corners_->at(row + down, column + right))) return false;
-      if (down <= reach_ && right <= reach_ && !is_alike(centers_->at(row + down, column + right)))
-        return false;
-    }
-  return true;
+  probes_.reset();
 }
 
 std::optional<FittedPixel> BlockTracer::fit(int row, int column) const {
-  const Probe& middle = centers_->at(row, column);
+  const Probe& middle = probes_->center(row, column);
   const bool hit = middle.surface != Probe::kNothing;
   if (hit && (!middle.faces_eye || !pixels_.takes_first_order[middle.material])) return std::nullopt;
-  if (!agree(row, column)) return std::nullopt;
-  std::array<const Probe*, PixelFit::kRays> probes;
-  for (std::size_t n = 0; n < probes.size(); ++n) {
-    const Eigen::Vector2d& offset = PixelFit::offsets()[n];
-    const bool corner = offset.x() != std::round(offset.x());
-    probes[n] =
-        corner ? &corners_->at(row + (offset.y() > 0 ? 1 : 0), column + (offset.x() > 0 ? 1 : 0))
-               : &centers_->at(row + static_cast<int>(offset.y()), column + static_cast<int>(offset.x()));
-  }
-  const PixelFit fitted(probes);
+  if (!probes_->agree(row, column)) return std::nullopt;
+  const PixelFit fitted(probes_->of_fit(row, column));
   FittedPixel pixel;
   pixel.radiance = fitted.radiance(few_);
   if (!hit) return pixel;
   pixel.footprint = fitted.footprint(few_);
   pixel.normal = middle.normal;
   const FitLimits limits{pixels_.largest_residual, std::max(1, pixels_.subpixels * pixels_.subpixels)};
-  for (std::size_t lamp = 0; lamp < middle.lamps.size(); ++lamp)
-    if (middle.lamps[lamp].shines &&
+  for (std::size_t lamp = 0; lamp < middle.lamps.size(); ++lamp) {
+    if (!fitted.sees(lamp)) continue;
+    if (fitted.penumbra_residual(lamp) > kMostPenumbraResidual ||
         !fitted.ask(lamp, few_, pixels_.normal_change[middle.material], limits, &pixel.queries))
       return std::nullopt;
+  }
   for (GlintQuery& query : pixel.queries) query.material = middle.material;
   return pixel;
 }
@@ -315,7 +245,7 @@ void BlockTracer::sample_cell(int row, int column, std::uint32_t first_sample, R
     }
     points.push_back(viewer_.look(first_column_ + column + (right + 0.5) / n,
                                   first_row_ + row + (down + 0.5) / n,
-                                  shadow_sample(key(row, column), k, n)));
+                                  {light_sample(key(row, column), k, n)}));
   }
   const std::vector<std::vector<Eigen::Matrix2d>> turns = turns_of(points);
   const bool owned = row >= 0 && row < rows_.row_count && column >= 0 && column < width_;
@@ -346,7 +276,7 @@ std::optional<Eigen::Matrix2d> half_vector_change(const std::vector<SeenPoint>& 
   const SeenPoint& middle = points[static_cast<std::size_t>(k)];
   const auto is_alike = [&](const SeenPoint& point) {
     return point.hit && point.faces_eye && point.hit->shape == middle.hit->shape &&
-           point.hit->part == middle.hit->part && point.lamps[lamp].shines;
+           point.hit->part == middle.hit->part && point.lamps[lamp].visible > 0;
   };
   const int place[2] = {k % n, k / n}, stride[2] = {1, n};
   Eigen::Matrix2d change;
@@ -374,7 +304,7 @@ std::vector<std::vector<Eigen::Matrix2d>> BlockTracer::turns_of(const std::vecto
     if (!point.hit || !point.faces_eye || !pixels_.takes_first_order[point.material]) continue;
     turns[k].assign(point.lamps.size(), Eigen::Matrix2d::Zero());
     for (std::size_t lamp = 0; lamp < point.lamps.size(); ++lamp) {
-      if (!point.lamps[lamp].shines) continue;
+      if (!(point.lamps[lamp].visible > 0)) continue;
       const auto change = half_vector_change(points, pixels_.subpixels, static_cast<int>(k), lamp);
       const double least = kLeastTurn * point.lamps[lamp].seen.roughness / lattice_filter_.sigma_pixels;
       if (change && change->norm() > least) turns[k][lamp] = turn_over(point.duv, *change);

@@ -20,23 +20,29 @@ StaticScene::StaticScene(const SceneDescription& description)
 }
 
 SeenLamp Viewer::see(const LightDescription& light, const SeenPoint& point,
-                     const Eigen::Vector2d& light_sample) const {
+                     const std::vector<Eigen::Vector2d>& light_samples) const {
   const TangentFrame& frame = point.frame;
   SeenLamp lamp;
   lamp.incident = illuminate(light, point.hit->position);
   if (!(lamp.incident.irradiance.maxCoeff() > 0)) return lamp;
   const Eigen::Vector3d& direction = lamp.incident.direction;
   if (direction.dot(frame.z) < kMinCosine || direction.dot(frame.face_normal) < kMinCosine) return lamp;
-  const LightRay to_light = light_ray(light, point.hit->position, light_sample);
-  if (to_light.direction.dot(frame.face_normal) < kMinCosine) return lamp;
-  if (shared->geometry.occluded(*point.hit, to_light.direction, to_light.distance)) return lamp;
-  lamp.shines = true;
+  const std::size_t rays = has_extent(light) ? light_samples.size() : 1;
+  std::size_t arrived = 0;
+  for (std::size_t n = 0; n < rays; ++n) {
+    const LightRay to_light = light_ray(light, point.hit->position, light_samples[n]);
+    arrived += to_light.direction.dot(frame.face_normal) >= kMinCosine &&
+               !shared->geometry.occluded(*point.hit, to_light.direction, to_light.distance);
+  }
+  lamp.is_above = true;
+  lamp.visible = static_cast<double>(arrived) / static_cast<double>(rays);
+  lamp.incident.irradiance *= lamp.visible;
   lamp.seen = see_lobes((*layers)[point.material], frame.z, point.to_eye, lamp.incident);
   lamp.half_vector = frame.on_disk(lamp.seen.half_vector);
   return lamp;
 }
 
-SeenPoint Viewer::look(double x, double y, const Eigen::Vector2d& light_sample) const {
+SeenPoint Viewer::look(double x, double y, const std::vector<Eigen::Vector2d>& light_samples) const {
   SeenPoint point;
   point.ray = camera.ray(x, y);
   point.hit = shared->geometry.intersect({point.ray.origin, point.ray.direction});
@@ -54,8 +60,8 @@ SeenPoint Viewer::look(double x, double y, const Eigen::Vector2d& light_sample) 
   point.faces_eye = point.frame.face_normal.dot(point.to_eye) >= kMinCosine;
   if (!point.faces_eye) return point;
   for (const LightDescription& light : lights) {
-    const SeenLamp& lamp = point.lamps.emplace_back(see(light, point, light_sample));
-    if (lamp.shines) point.radiance += lamp.seen.smooth.cwiseProduct(lamp.incident.irradiance);
+    const SeenLamp& lamp = point.lamps.emplace_back(see(light, point, light_samples));
+    if (lamp.visible > 0) point.radiance += lamp.seen.smooth.cwiseProduct(lamp.incident.irradiance);
   }
   return point;
 }
@@ -94,7 +100,7 @@ void Viewer::ask(const SeenPoint& point, double sigma_pixels, const SamplePlace&
 
   for (std::size_t n = 0; n < point.lamps.size(); ++n) {
     const SeenLamp& lamp = point.lamps[n];
-    if (!lamp.shines) continue;
+    if (!(lamp.visible > 0)) continue;
     if (gathering.patch_materials[point.material]) {
       query.query.roughness = lamp.seen.roughness;
       queries->lit.push_back(lit_brdf(query, point, lamp.incident));

@@ -38,9 +38,9 @@ struct StaticScene {
 
 /// A lamp seen from a point.
 struct SeenLamp {
-  bool shines =
-      false;  ///< above the horizons, with any power, and not in a shadow; else nothing below is set
-  Illumination incident;
+  bool is_above = false;  ///< the horizons, with any power; else nothing below is set
+  double visible = 0;     ///< share of it that no shadow hides
+  Illumination incident;  ///< of what is visible
   LobesSeen seen;
   Eigen::Vector2d half_vector{0, 0};  ///< on the disk of the point's frame
 };
@@ -84,8 +84,9 @@ struct Viewer {
   LightGathering gathering;
 
   /// The ray through (x, y), pixels from the left and from the top edge.
-  /// @param light_sample where on a light the shadow ray ends, see light_ray.
-  SeenPoint look(double x, double y, const Eigen::Vector2d& light_sample) const;
+  /// @param light_samples where on a light the shadow rays end, see light_ray; of a light without extent the
+  /// first one does.
+  SeenPoint look(double x, double y, const std::vector<Eigen::Vector2d>& light_samples) const;
 
   /// Adds what a Gaussian of `sigma_pixels` about a point that faces the eye has to be asked.
   /// @param turns of the half vector by lamp, per unit of uv; empty: they are constant.
@@ -94,7 +95,7 @@ struct Viewer {
 
  private:
   SeenLamp see(const LightDescription& light, const SeenPoint& point,
-               const Eigen::Vector2d& light_sample) const;
+               const std::vector<Eigen::Vector2d>& light_samples) const;
   LitBrdf lit_brdf(const GlintQuery& query, const SeenPoint& point, const Illumination& incident) const;
 };
 

@@ -2,19 +2,19 @@
 // filter: there a footprint is a sixteenth as wide, and neither bends nor turns by much.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <fstream>
 #include <string>
 #include <vector>
 
 #include "host/job/job.h"
 #include "host/render/render.h"
+#include "tests/render/fine_picture.h"
 #include "tests/temporary_path.h"
 
 namespace mica::host::pixel_fit_test {
 namespace {
 
-constexpr int kSize = 40, kFine = 16;  // pixels a side, and of the fine picture in one
+constexpr int kSize = 40;  // pixels a side
 
 std::string sphere_job() {
   const std::string path = temporary_path("pixel_fit_test.toml");
@@ -37,41 +37,6 @@ RenderResult render_job(const std::vector<std::string>& overrides, int rows_a_bl
   return render(job, plan, device, [](int, int) {});
 }
 
-double green(const Image& image, int row, int column) {
-  return static_cast<double>(
-      image.pixels[(static_cast<std::size_t>(row) * static_cast<std::size_t>(image.width) +
-                    static_cast<std::size_t>(column)) *
-                       image.channels.size() +
-                   1]);
-}
-
-/// Of pixel (row, column) by a Gaussian of half a pixel about its centre, from a picture of single Gaussians
-/// of half a fine pixel.
-double filtered(const Image& fine, int row, int column) {
-  constexpr double sigma2 = 0.25 * kFine * kFine - 0.25;
-  double sum = 0, weights = 0;
-  const double y = (row + 0.5) * kFine - 0.5, x = (column + 0.5) * kFine - 0.5;
-  for (int j = std::max(0, static_cast<int>(y) - 5 * kFine / 2 - 4);
-       j < std::min(fine.height, static_cast<int>(y) + 5 * kFine / 2 + 5); ++j)
-    for (int i = std::max(0, static_cast<int>(x) - 5 * kFine / 2 - 4);
-         i < std::min(fine.width, static_cast<int>(x) + 5 * kFine / 2 + 5); ++i) {
-      const double weight = std::exp(-0.5 * ((j - y) * (j - y) + (i - x) * (i - x)) / sigma2);
-      sum += weight * green(fine, j, i), weights += weight;
-    }
-  return sum / weights;
-}
-
-/// Relative L2 over the pixels whose filter lies in the picture.
-double error(const Image& image, const Image& fine) {
-  double square = 0, all = 0;
-  for (int row = 3; row < kSize - 3; ++row)
-    for (int column = 3; column < kSize - 3; ++column) {
-      const double truth = filtered(fine, row, column), difference = green(image, row, column) - truth;
-      square += difference * difference, all += truth * truth;
-    }
-  return std::sqrt(square / all);
-}
-
 const Image& fine_picture() {
   static const Image fine = render_job({"image.width=640", "image.height=640", "image.subpixels=1"}).image;
   return fine;
@@ -79,12 +44,7 @@ const Image& fine_picture() {
 
 TEST(PixelFit, OneFootprintAPixelShowsAsMuchAsTheFinePicture) {
   const RenderResult one = render_job({});
-  double queries = 0;
-  for (int row = 3; row < kSize - 3; ++row)
-    for (int column = 3; column < kSize - 3; ++column)
-      queries += static_cast<double>(
-          one.image.pixels[static_cast<std::size_t>(row * kSize + column) * one.image.channels.size() + 3]);
-  EXPECT_LT(queries / ((kSize - 6) * (kSize - 6)), 1.5);
+  EXPECT_LT(mean_of(one.image, 3), 1.5);  // queries
   EXPECT_LT(error(one.image, fine_picture()), 0.005);
   // With constant half vectors sixteen footprints a pixel are further away.
   const RenderResult sixteen = render_job({"image.filter=subpixels"});
