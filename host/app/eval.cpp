@@ -2,7 +2,9 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -68,6 +70,13 @@ QueryTable read_queries(const EvalOptions& options, const MethodSettings& settin
   return QueryTable(options.queries, given ? settings.own_roughness() : std::nullopt, "--microroughness");
 }
 
+double least_roughness(const QueryTable& table) {
+  double least = 1;
+  for (std::size_t row = 0; row < table.size(); ++row)
+    least = std::min(least, std::sqrt(lobe_covariance(table.query(row)).diagonal().minCoeff()));
+  return least;
+}
+
 int run_patches(const EvalOptions& options) {
   if (options.method.tolerance) throw UsageError("--tolerance is for --quantity ndf");
   return evaluate_patches({options.map, options.method, options.quantity, options.queries, options.output,
@@ -89,6 +98,7 @@ int run(const EvalOptions& options) {
   const QueryTable table = read_queries(options, *settings);
   const EvalSubject subject = load_subject(options.map, options.method, *settings);
   table.check([&](const Query& query) { return method.query_problem(query, subject.map()); });
+  if (subject.map() != nullptr) log_precision(*subject.map(), least_roughness(table));
   times.load = lap(&start);
   const OpenEvaluator open = open_evaluator(method, *settings, options.device, subject.map());
   open.evaluator->calibrate(

@@ -92,8 +92,8 @@ class Method {
   /// take.
   std::unique_ptr<Evaluator> make(Device* device, const Surface* surface,
                                   const MethodSettings& settings) const;
-  virtual std::unique_ptr<PatchBrdf> make_brdf(Device* device, const Surface* surface,
-                                               const MethodSettings& settings) const;
+  std::unique_ptr<PatchBrdf> make_brdf(Device* device, const Surface* surface,
+                                       const MethodSettings& settings) const;
 
   /// Why a query cannot be answered, or empty when it can. @param surface null without a map.
   std::string query_problem(const Query& query, const Surface* surface) const;
@@ -119,6 +119,8 @@ class Method {
   /// `make`, with answers as they come.
   virtual std::unique_ptr<Evaluator> make_own(Device* device, const Surface* surface,
                                               const MethodSettings& settings) const;
+  virtual std::unique_ptr<PatchBrdf> make_own_brdf(Device* device, const Surface* surface,
+                                                   const MethodSettings& settings) const;
   [[noreturn]] void refuse_brdf() const;
   [[noreturn]] void refuse_densities() const;
 };

@@ -10,6 +10,7 @@
 #include "host/methods/triangles/triangle_evaluator.h"
 #include "host/scene/keyframes.h"
 #include "host/surface/in_time.h"
+#include "host/surface/map_precision.h"
 
 namespace mica::host {
 namespace {
@@ -167,10 +168,19 @@ void BuiltJob::go_to(int frame) {
   build_seconds_ = building.seconds();
 }
 
+double BuiltJob::least_roughness(std::size_t n) const {
+  double least = 1;
+  for (std::size_t m = 0; m < job_.scene.materials.size(); ++m)
+    if (plan_.evaluator_of_material[m] == static_cast<int>(n))
+      least = std::min(least, job_.scene.materials[m].roughness);
+  return least;
+}
+
 Surface BuiltJob::make_surface_of(std::size_t n, int frame) {
   const SurfaceDescription& description = job_.surfaces[plan_.evaluators[n].surface_index];
   SurfaceReport report;
   Surface surface = make_surface(after(description, job_.frames.seconds(frame)), &report);
+  report_precision(surface, least_roughness(n), &report);
   const auto named = [&](std::vector<std::string> texts) {
     for (std::string& text : texts) text = fmt::format("surface {}: {}", description.name, text);
     return texts;

@@ -54,6 +54,7 @@ class BuiltJob {
 
  private:
   Surface make_surface_of(std::size_t n, int frame);
+  double least_roughness(std::size_t n) const;  ///< of its materials
   void build_evaluator(std::size_t n);
   Scene scene_at(int frame) const;
   std::vector<std::optional<Surface>> make_surfaces();
