@@ -112,7 +112,7 @@ int run(const EvalOptions& options) {
 
   write_file_atomically(options.output, to_npy(densities));
   if (const std::size_t replaced = open.evaluator->replaced())
-    spdlog::warn("{} densities were not finite: the oracle answered in their place", replaced);
+    spdlog::warn("{} densities were not finite: the oracle's are in their place", replaced);
   spdlog::info("{} queries by {} on {} in {:.3g} s", densities.size(), open.evaluator->name(),
                open.device ? open.device->info().name : "the host", times.evaluate);
   if (!options.json.empty())

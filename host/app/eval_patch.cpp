@@ -158,6 +158,8 @@ int evaluate_patches(const PatchEvaluation& options) {
   const double seconds = evaluating.seconds();
 
   write_file_atomically(options.output, to_npy(answers.values, answers.columns));
+  if (const std::size_t replaced = brdf->replaced())
+    spdlog::warn("{} answers were not finite: 0 is in their place", replaced);
   spdlog::info("{} rows of {} by {} on {} in {:.3g} s", table.size(), options.quantity, brdf->name(),
                device.info().name, seconds);
   if (options.json.empty()) return 0;
@@ -179,6 +181,7 @@ int evaluate_patches(const PatchEvaluation& options) {
                 {"evaluate", seconds},
                 {"device", brdf->device_seconds()}}},
               {"queries", table.size()},
+              {"replaced_answers", brdf->replaced()},
               {"queries_per_second", seconds > 0 ? static_cast<double>(table.size()) / seconds : 0.0},
               {"output", options.output}});
   return 0;

@@ -120,7 +120,7 @@ class FiniteEvaluator : public Evaluator {
   double error_estimate(const Query& query, double density) const override {
     return evaluator_->error_estimate(with_wider_lobe(query, variance_), density);
   }
-  std::size_t replaced() const override { return substitute_->count(); }
+  std::size_t replaced() const override { return substitute_->count() + evaluator_->replaced(); }
   std::string name() const override { return evaluator_->name(); }
   std::size_t device_bytes() const override { return evaluator_->device_bytes(); }
   double build_seconds() const override { return evaluator_->build_seconds(); }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "host/methods/evaluator.h"
+#include "host/methods/finite_brdf.h"
 #include "host/methods/finite_evaluator.h"
 #include "host/methods/map/map_query.h"
 #include "host/methods/patch_brdf.h"
@@ -43,7 +44,7 @@ std::unique_ptr<PatchBrdf> Method::make_brdf(Device* device, const Surface* surf
         "precision \"widen\": the BRDF of {} takes its lobes as they are; say a roughness that is wider by "
         "{:.2g}, in squares",
         name(), std::sqrt(surface->lobe_variance())));
-  return make_own_brdf(device, surface, settings);
+  return with_finite_answers(make_own_brdf(device, surface, settings));
 }
 
 std::unique_ptr<PatchBrdf> Method::make_own_brdf(Device*, const Surface*, const MethodSettings&) const {

@@ -74,7 +74,7 @@ BuiltJob::BuiltJob(const Job& job, const Plan& plan, Device& device, int frame)
 void BuiltJob::build_evaluator(std::size_t n) {
   const PlannedEvaluator& planned = plan_.evaluators[n];
   past_device_seconds_ += device_seconds_of(n);
-  if (evaluators_[n]) past_replaced_answers_ += evaluators_[n]->replaced();
+  past_replaced_answers_ += replaced_answers_of(n);
   brdfs_[n].reset();  // buffers go before the new ones come
   evaluators_[n].reset();
   if (planned.asks_densities) evaluators_[n] = make_density_evaluator(n);
@@ -291,9 +291,12 @@ std::unique_ptr<Evaluator> BuiltJob::make_exact_evaluator(std::size_t n) const {
 
 std::size_t BuiltJob::replaced_answers() const {
   std::size_t count = past_replaced_answers_;
-  for (const std::unique_ptr<Evaluator>& evaluator : evaluators_)
-    if (evaluator) count += evaluator->replaced();
+  for (std::size_t n = 0; n < evaluators_.size(); ++n) count += replaced_answers_of(n);
   return count;
+}
+
+std::size_t BuiltJob::replaced_answers_of(std::size_t n) const {
+  return (evaluators_[n] ? evaluators_[n]->replaced() : 0) + (brdfs_[n] ? brdfs_[n]->replaced() : 0);
 }
 
 PendingBlock::PendingBlock(TracedRows rows, const BuiltJob& built)

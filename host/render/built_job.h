@@ -62,6 +62,7 @@ class BuiltJob {
   LightGathering gathering() const;
   PixelSettings pixels() const;
   double device_seconds_of(std::size_t n) const;
+  std::size_t replaced_answers_of(std::size_t n) const;
   Scene make_scene();
   std::unique_ptr<Evaluator> make_density_evaluator(std::size_t n);
   void calibrate(std::size_t n, Evaluator* evaluator);
