@@ -86,8 +86,8 @@ class Method {
   /// Whether its BRDF never scatters more than it receives.
   virtual bool conserves_energy(const MethodSettings&) const { return true; }
 
-  /// Answers that are not finite are replaced and counted: by the oracle's (Evaluator::replaced), or by 0 of a
-  /// BRDF (PatchBrdf::replaced).
+  /// Answers that are not finite are replaced and counted: by the oracle's (Evaluator::replaced), or by 0 of
+  /// a BRDF (PatchBrdf::replaced).
   /// @param device, surface have to outlive what is made; null where the traits say that it needs none.
   /// Throws UsageError where the method has no such thing, and for a surface or settings that it does not
   /// take.

@@ -61,6 +61,7 @@ BuiltJob::BuiltJob(const Job& job, const Plan& plan, Device& device, int frame)
       device_(device),
       frame_(frame),
       surface_findings_(plan.evaluators.size()),
+      precision_errors_(plan.evaluators.size()),
       choices_(plan.evaluators.size()),
       surfaces_(make_surfaces()),
       scene_(make_scene()) {
@@ -180,7 +181,7 @@ Surface BuiltJob::make_surface_of(std::size_t n, int frame) {
   const SurfaceDescription& description = job_.surfaces[plan_.evaluators[n].surface_index];
   SurfaceReport report;
   Surface surface = make_surface(after(description, job_.frames.seconds(frame)), &report);
-  report_precision(surface, least_roughness(n), &report);
+  precision_errors_[n] = report_precision(surface, least_roughness(n), &report);
   const auto named = [&](std::vector<std::string> texts) {
     for (std::string& text : texts) text = fmt::format("surface {}: {}", description.name, text);
     return texts;
@@ -287,6 +288,12 @@ std::vector<Evaluator*> BuiltJob::evaluators() const {
 
 std::unique_ptr<Evaluator> BuiltJob::make_exact_evaluator(std::size_t n) const {
   return surface(n) ? std::make_unique<TriangleEvaluator>(device_, *surface(n)) : nullptr;
+}
+
+double BuiltJob::precision_error() const {
+  double largest = 0;
+  for (const double error : precision_errors_) largest = std::max(largest, error);
+  return largest;
 }
 
 std::size_t BuiltJob::replaced_answers() const {

@@ -47,6 +47,8 @@ class BuiltJob {
   std::size_t device_bytes() const;  ///< of all structures, as allocated
   double device_seconds() const;     ///< that kernels ran so far, by the device's clock
 
+  /// The largest of its surfaces; see mica::host::precision_error. For each, its materials' least roughness.
+  double precision_error() const;
   std::size_t replaced_answers() const;  ///< so far; see Evaluator::replaced
 
   std::vector<std::string> notes() const;     ///< of surfaces and images
@@ -78,6 +80,7 @@ class BuiltJob {
   std::size_t past_replaced_answers_ = 0;
   // By PlannedEvaluator: what was found of the surface, what its method chose, and the surface.
   std::vector<Findings> surface_findings_;
+  std::vector<double> precision_errors_;  // of surfaces
   std::vector<std::vector<std::string>> choices_;
   std::vector<std::optional<Surface>> surfaces_;
   Scene scene_;

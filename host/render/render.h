@@ -35,6 +35,7 @@ struct RenderResult {
   AuditResult audit;             ///< of queries
   PictureAudit picture_audit;
   FilmRepairs repairs;
+  double precision_error = 0;        ///< of maps, by the steps of their files: BuiltJob::precision_error
   std::size_t replaced_answers = 0;  ///< that were not finite: the oracle's, or 0 of a BRDF
   std::vector<std::string> surface_notes, surface_warnings;
 };

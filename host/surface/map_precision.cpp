@@ -14,10 +14,12 @@
 namespace mica::host {
 namespace {
 
-constexpr int kIterations = 400, kTileIterations = 120;
+constexpr int kIterations = 200, kTileIterations = 80;
 constexpr double kSigmaTexels = 24, kFootprintReach = 3;  // of footprints; standard deviations
-constexpr int kMargin = 16;                      // of a tile, whose edges are no neighbours
+constexpr int kMargin = 32;                               // of a tile, whose edges are no neighbours
+constexpr int kFlatTexels = 400;                          // of a facet that is wider than plateaus of a slope
 constexpr std::size_t kTiles = 4;
+constexpr float kHalfStep = 0.51f;  // of one that scaling to length 1 moved, too
 
 /// A square of the surface, in steps; one grid a coordinate.
 struct Tile {
@@ -68,14 +70,22 @@ std::vector<int> facets_of(const Tile& tile) {
 Tile another(const Tile& tile, std::uint64_t seed) {
   Tile other = tile;
   const std::vector<int> facets = facets_of(tile);
-  const SmoothShares shares = smooth_shares(tile.grids[0], tile.grids[1]);
+  std::vector<int> texels_of(facets.size());
+  for (const int facet : facets) ++texels_of[facet];
+  const SmoothShares shares = smooth_shares(tile.grids[0], tile.grids[1], 1);
+  restore_steps(kTileIterations, &other.grids[0], &other.grids[1]);
   for (const int axis : {0, 1}) {
-    restore_steps(shares, kTileIterations, &other.grids[axis]);
     for (std::size_t n = 0; n < facets.size(); ++n) {
-      const float smooth = std::max({shares[0][n], shares[1][n], shares[2][n], shares[3][n]});
+      const float rounded = tile.grids[axis].values[n];
+      // Nothing tells where between the steps a wide facet lies, but that what may be flat is.
+      const bool is_wide = texels_of[facets[n]] >= kFlatTexels;
+      const float smooth =
+          is_wide ? 0.0f : std::max({shares[0][n], shares[1][n], shares[2][n], shares[3][n]});
       const double within = random_unit(seed, static_cast<std::uint64_t>(axis), facets[n]) - 0.5;
+      const bool is_flat = is_wide && std::abs(rounded) <= kHalfStep;
+      const float apart = is_flat ? 0.0f : rounded + static_cast<float>(within);
       float& value = other.grids[axis].values[n];
-      value = smooth * value + (1 - smooth) * (tile.grids[axis].values[n] + static_cast<float>(within));
+      value = smooth * value + (1 - smooth) * apart;
     }
   }
   return other;
@@ -172,11 +182,9 @@ void restore_normals(int width, int height, double step, std::vector<Eigen::Vect
     for (std::size_t n = 0; n < normals->size(); ++n)
       grids[axis].values[n] = static_cast<float>((*normals)[n][axis] / step);
   }
-  const SmoothShares shares = smooth_shares(grids[0], grids[1]);
-  for (const int axis : {0, 1}) {
-    restore_steps(shares, kIterations, &grids[axis]);
+  restore_steps(kIterations, &grids[0], &grids[1]);
+  for (const int axis : {0, 1})
     for (std::size_t n = 0; n < normals->size(); ++n) (*normals)[n][axis] = step * grids[axis].values[n];
-  }
   for (Eigen::Vector2d& normal : *normals)
     if (normal.norm() > kRim) normal *= kRim / normal.norm();
 }
@@ -214,15 +222,16 @@ double precision_error(const Surface& surface, double roughness) {
   return std::sqrt(difference / square);
 }
 
-void report_precision(const Surface& surface, double roughness, Findings* findings) {
+double report_precision(const Surface& surface, double roughness, Findings* findings) {
   constexpr double worth_a_word = 1e-3, worth_a_warning = 0.05;
   const double error = precision_error(surface, roughness);
-  if (!(error >= worth_a_word)) return;
+  if (!(error >= worth_a_word)) return error;
   const std::string text = fmt::format(
       "its steps of {:.2g} put P-NDFs off by about {:.2g}% (relative L2 at roughness {:.3g} under "
       "footprints of {:g} texels); see precision",
       surface.step(), 100 * error, roughness, kSigmaTexels);
   (error < worth_a_warning ? findings->notes : findings->warnings).push_back(text);
+  return error;
 }
 
 }  // namespace mica::host

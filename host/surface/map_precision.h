@@ -17,8 +17,9 @@ void restore_normals(int width, int height, double step, std::vector<Eigen::Vect
 /// same on a facet of equal texels. 0 without steps.
 double precision_error(const Surface& surface, double roughness);
 
-/// Says that error where it is a thousandth or more: as a warning from 5% on, with what may help.
+/// Returns that error, and says it where it is a thousandth or more: as a warning from 5% on, with what may
+/// help.
 /// @param roughness the smallest that is asked of the surface.
-void report_precision(const Surface& surface, double roughness, Findings* findings);
+double report_precision(const Surface& surface, double roughness, Findings* findings);
 
 }  // namespace mica::host

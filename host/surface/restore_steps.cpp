@@ -19,6 +19,7 @@ using synthesis::wrapped;
 /// Texels that differ by more than that from a ramp are left alone, in between they give way by a part.
 constexpr float kSmooth = 0.65f, kRough = 0.9f;
 constexpr int kShareReach = 12;  // of the square over which they are averaged
+constexpr int kLongestStride = 64;
 
 /// A place of the grid and the eight around it.
 struct Neighbourhood {
@@ -36,9 +37,9 @@ struct Neighbourhood {
   }
 };
 
-/// Calls `visit(neighbourhood)` for all places of a grid, in parallel.
+/// Calls `visit(neighbourhood)` for all places of a grid, in parallel. @param stride to those around.
 template <typename Visit>
-void everywhere(int width, int height, const Visit& visit) {
+void everywhere(int width, int height, int stride, const Visit& visit) {
   const int rows_a_task = std::max(1, (1 << 16) / width);
   tbb::parallel_for(tbb::blocked_range<int>(0, height, static_cast<std::size_t>(rows_a_task)),
                     [&](const tbb::blocked_range<int>& rows) {
@@ -47,16 +48,20 @@ void everywhere(int width, int height, const Visit& visit) {
                           return static_cast<std::size_t>(wrapped(k, height)) *
                                  static_cast<std::size_t>(width);
                         };
-                        const std::size_t own = row(j), below = row(j - 1), above = row(j + 1);
+                        const std::size_t own = row(j), below = row(j - stride), above = row(j + stride);
                         const auto at = [&](int i, int before, int after) {
                           const auto x = static_cast<std::size_t>(i), l = static_cast<std::size_t>(before),
                                      r = static_cast<std::size_t>(after);
                           visit(Neighbourhood{own + x, own + l, own + r, below + x, above + x, below + l,
                                               below + r, above + l, above + r});
                         };
-                        at(0, width - 1, wrapped(1, width));
-                        for (int i = 1; i + 1 < width; ++i) at(i, i - 1, i + 1);
-                        if (width > 1) at(width - 1, width - 2, 0);
+                        const int last = width - stride;
+                        for (int i = 0; i < width; ++i) {
+                          if (i >= stride && i < last)
+                            at(i, i - stride, i + stride);
+                          else
+                            at(i, wrapped(i - stride, width), wrapped(i + stride, width));
+                        }
                       }
                     });
 }
@@ -87,10 +92,10 @@ std::vector<float> averaged(int width, int height, const std::vector<float>& val
 
 }  // namespace
 
-SmoothShares smooth_shares(const RoundedGrid& u, const RoundedGrid& v) {
+SmoothShares smooth_shares(const RoundedGrid& u, const RoundedGrid& v, int stride) {
   SmoothShares squares;
   for (std::vector<float>& of_direction : squares) of_direction.resize(u.values.size());
-  everywhere(u.width, u.height, [&](const Neighbourhood& n) {
+  everywhere(u.width, u.height, stride, [&](const Neighbourhood& n) {
     const std::array<float, 4> of_u = n.along_all(u.values.data()), of_v = n.along_all(v.values.data());
     for (std::size_t d = 0; d < squares.size(); ++d)
       squares[d][n.place] = 0.5f * (of_u[d] * of_u[d] + of_v[d] * of_v[d]);
@@ -103,25 +108,28 @@ SmoothShares smooth_shares(const RoundedGrid& u, const RoundedGrid& v) {
   return shares;
 }
 
-void restore_steps(const SmoothShares& shares, int iterations, RoundedGrid* grid) {
+namespace {
+
+/// @param rounded what the grid has to round to.
+void smooth(const SmoothShares& shares, int stride, int iterations, const std::vector<float>& rounded,
+            RoundedGrid* grid) {
   float largest = 0;  // bound of the gradient's slope: a second difference's norm is 4
   for (const std::vector<float>& share : shares)
     largest += 16 * *std::max_element(share.begin(), share.end());
   if (!(largest > 0)) return;
-  const std::vector<float> rounded = grid->values;
   std::vector<float>& found = grid->values;
   std::vector<float> ahead = found;
   SmoothShares tensions = shares;
   double momentum = 1;
   for (int iteration = 0; iteration < iterations; ++iteration) {
-    everywhere(grid->width, grid->height, [&](const Neighbourhood& n) {
+    everywhere(grid->width, grid->height, stride, [&](const Neighbourhood& n) {
       const std::array<float, 4> seconds = n.along_all(ahead.data());
       for (std::size_t d = 0; d < seconds.size(); ++d) tensions[d][n.place] = shares[d][n.place] * seconds[d];
     });
     const double next = 0.5 * (1 + std::sqrt(1 + 4 * momentum * momentum));
     const auto carried = static_cast<float>((momentum - 1) / next);
     momentum = next;
-    everywhere(grid->width, grid->height, [&](const Neighbourhood& n) {
+    everywhere(grid->width, grid->height, stride, [&](const Neighbourhood& n) {
       const float slope = n.along_u(tensions[0].data()) + n.along_v(tensions[1].data()) +
                           n.along_rise(tensions[2].data()) + n.along_fall(tensions[3].data());
       const float middle = rounded[n.place],
@@ -129,6 +137,19 @@ void restore_steps(const SmoothShares& shares, int iterations, RoundedGrid* grid
       ahead[n.place] = moved + carried * (moved - found[n.place]);
       found[n.place] = moved;
     });
+  }
+}
+
+}  // namespace
+
+void restore_steps(int iterations, RoundedGrid* u, RoundedGrid* v) {
+  const RoundedGrid rounded_u = *u, rounded_v = *v;
+  for (int stride = kLongestStride; stride > 0; stride /= 2) {
+    if (4 * stride > std::min(u->width, u->height)) continue;
+    const SmoothShares shares = smooth_shares(rounded_u, rounded_v, stride);
+    const int count = stride == 1 ? iterations : iterations / 3 + 1;
+    smooth(shares, stride, count, rounded_u.values, u);
+    smooth(shares, stride, count, rounded_v.values, v);
   }
 }
 

@@ -117,7 +117,10 @@ class FailingBrdf : public PatchBrdf {
   }
   std::vector<BrdfSample> sample(const std::vector<SampleQuery>&) override {
     const Eigen::Vector3f up(0, 0, 1);
-    return {{up, kGood, kGood, kGood}, {up * kNone, kGood, 0, 0}, {up, kNone, 0, 0}, {up, kGood, kNone, 0},
+    return {{up, kGood, kGood, kGood},
+            {up * kNone, kGood, 0, 0},
+            {up, kNone, 0, 0},
+            {up, kGood, kNone, 0},
             {up, kGood, 0, kNone}};
   }
   std::string name() const override { return "failing"; }
