@@ -2,7 +2,9 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -80,6 +82,13 @@ ValueFile open_output(const EvalOptions& options, const QueryTable& table) {
           : answers_identity(table.source(), options.map, options.method, "--quantity ndf " + roughness));
 }
 
+double least_roughness(const QueryTable& table, const TableRange& rows) {
+  double least = 1;
+  for (std::size_t row = rows.first; row < rows.end; ++row)
+    least = std::min(least, std::sqrt(lobe_covariance(table.query(row)).diagonal().minCoeff()));
+  return least;
+}
+
 int run_patches(const EvalOptions& options) {
   if (options.method.tolerance) throw UsageError("--tolerance is for --quantity ndf");
   return evaluate_patches({options.map, options.method, options.output, options.quantity, options.queries,
@@ -101,6 +110,7 @@ int run(const EvalOptions& options) {
   const EvalSubject subject = load_subject(options.map, options.method, *settings);
   const TableRange rows = options.output.rows(table.size());
   table.check(rows, [&](const Query& query) { return method.query_problem(query, subject.map()); });
+  if (subject.map() != nullptr) log_precision(*subject.map(), least_roughness(table, rows));
   times.load = lap(&start);
   const OpenEvaluator open = open_evaluator(method, *settings, options.device, subject.map());
   open.evaluator->calibrate(
@@ -116,7 +126,7 @@ int run(const EvalOptions& options) {
 
   output.finish();
   if (const std::size_t replaced = open.evaluator->replaced())
-    spdlog::warn("{} densities were not finite: the oracle answered in their place", replaced);
+    spdlog::warn("{} densities were not finite: the oracle's are in their place", replaced);
   spdlog::info("{} queries by {} on {} in {:.3g} s", rows.count(), open.evaluator->name(),
                open.device ? open.device->info().name : "the host", times.evaluate);
   if (!options.json.empty()) write_json(options.json, summary(options, subject, open, rows.count(), times));

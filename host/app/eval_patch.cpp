@@ -163,6 +163,8 @@ int evaluate_patches(const PatchEvaluation& options) {
   output.finish();
   const double seconds = evaluating.seconds();
 
+  if (const std::size_t replaced = brdf->replaced())
+    spdlog::warn("{} answers were not finite: 0 is in their place", replaced);
   spdlog::info("{} rows of {} by {} on {} in {:.3g} s", rows.count(), options.quantity, brdf->name(),
                device.info().name, seconds);
   if (options.json.empty()) return 0;
@@ -184,6 +186,7 @@ int evaluate_patches(const PatchEvaluation& options) {
                 {"evaluate", seconds},
                 {"device", brdf->device_seconds()}}},
               {"queries", rows.count()},
+              {"replaced_answers", brdf->replaced()},
               {"queries_per_second", seconds > 0 ? static_cast<double>(rows.count()) / seconds : 0.0},
               {"output", options.output.file()}});
   return 0;

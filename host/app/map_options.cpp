@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include "host/base/printable.h"
+#include "host/surface/map_precision.h"
 
 namespace mica::host::app {
 namespace {
@@ -53,6 +54,14 @@ void add_map_options(CommandLine* command, MapOptions* options) {
                    "For encoding height: texels of height per unit of the image's value")
       .type_name("TEXELS")
       .show_default();
+  command
+      ->add_option(
+          "--precision", options->precision,
+          "Of normals that a file tells in steps: as they are, restored between the steps where their "
+          "neighbours tell, or with lobes that are wider by the variance of rounding")
+      .type_name("NAME")
+      .check(words_of<Precision>())
+      .show_default();
   add_max_memory(command, &options->max_memory);
 }
 
@@ -65,6 +74,7 @@ Surface load_map(const MapOptions& options, SurfaceReport* report) {
   file.green = parse_word<GreenDirection>(options.green).value();
   file.invalid = parse_word<TexelRepair>(options.invalid).value();
   file.height_scale = options.height_scale;
+  file.precision = parse_word<Precision>(options.precision).value();
   SurfaceDescription description;
   description.name = "map";
   description.source = file;
@@ -72,6 +82,12 @@ Surface load_map(const MapOptions& options, SurfaceReport* report) {
   Surface surface = make_surface(description, report);
   log_report(*report);
   return surface;
+}
+
+void log_precision(const Surface& surface, double roughness) {
+  SurfaceReport report;
+  report_precision(surface, roughness, &report);
+  log_report(report);
 }
 
 void log_report(const SurfaceReport& report) {

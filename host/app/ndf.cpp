@@ -82,6 +82,7 @@ Image evaluate(const NdfOptions& options, const Surface& surface) {
   const std::string problem = method_of(options.method).query_problem(query, &surface);
   if (!problem.empty()) throw UsageError(problem);
 
+  log_precision(surface, query.roughness);
   const OpenEvaluator open =
       open_evaluator(method_of(options.method), *settings_of(options.method), options.device, &surface);
   Image image;

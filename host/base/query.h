@@ -42,6 +42,15 @@ inline bool has_first_order(const Query& query) {
   return lobe(0, 1) != 0 || lobe(1, 0) != 0 || lobe(0, 0) != lobe(1, 1);
 }
 
+/// The same query, with a lobe that is wider by a variance along every axis.
+inline Query with_wider_lobe(Query query, double variance) {
+  if (query.lobe_cov)
+    *query.lobe_cov += variance * Eigen::Matrix2d::Identity();
+  else
+    query.roughness = std::sqrt(query.roughness * query.roughness + variance);
+  return query;
+}
+
 /// The same query, with a scalar roughness where the lobe is round.
 inline Query with_scalar_roughness(Query query) {
   if (!query.lobe_cov || has_first_order(query)) return query;

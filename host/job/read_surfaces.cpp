@@ -25,6 +25,7 @@ SurfaceDescription read_map_file(TableReader& surface) {
   surface.read("encoding", map.encoding);
   surface.read("green", map.green);
   surface.read("invalid", map.invalid);
+  surface.read("precision", map.precision);
   surface.read("height_scale", map.height_scale, open_low(0, 1e6));
   if (surface.has("height_scale") && map.encoding != Encoding::height) {
     surface.report("height_scale", "found a scale of heights; expected encoding = \"height\" with it");

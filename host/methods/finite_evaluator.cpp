@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <optional>
 
 #include "host/reference/oracle.h"
+#include "host/surface/surface.h"
 #include "mica/error.h"
 
 namespace mica::host {
@@ -90,35 +92,47 @@ class FiniteEvaluator : public Evaluator {
  public:
   FiniteEvaluator(std::unique_ptr<Evaluator> evaluator, const Surface* surface)
       : evaluator_(std::move(evaluator)),
+        variance_(surface ? surface->lobe_variance() : 0),
         substitute_(std::make_shared<Substitute>(surface, evaluator_->name())) {}
 
   std::unique_ptr<PendingDensities> start(const std::vector<Query>& queries) override {
-    return std::make_unique<FiniteDensities>(evaluator_->start(queries), queries, substitute_);
+    if (variance_ == 0)
+      return std::make_unique<FiniteDensities>(evaluator_->start(queries), queries, substitute_);
+    std::vector<Query> wider(queries.size());
+    std::transform(queries.begin(), queries.end(), wider.begin(),
+                   [this](const Query& query) { return with_wider_lobe(query, variance_); });
+    return std::make_unique<FiniteDensities>(evaluator_->start(wider), wider, substitute_);
   }
   std::unique_ptr<PendingDensities> start_at(const std::vector<Query>& queries,
                                              const std::vector<GlintPoint>& points) override {
     return std::make_unique<FiniteDensities>(evaluator_->start_at(queries, points), queries, substitute_);
   }
   void calibrate(std::size_t count, const QuerySource& query, double scale) override {
-    evaluator_->calibrate(count, query, scale);
+    evaluator_->calibrate(count, wider(query), scale);
   }
   std::vector<AutoChoice> choices() const override { return evaluator_->choices(); }
   std::unique_ptr<Painter> painter(std::size_t count, const QuerySource& footprint,
                                    const ImageWindow& window) override {
+    if (variance_ > 0) return nullptr;  // it would be given footprints without wider lobes
     std::unique_ptr<Painter> painter = evaluator_->painter(count, footprint, window);
     return painter ? std::make_unique<FinitePainter>(std::move(painter), substitute_) : nullptr;
   }
   double error_estimate(const Query& query, double density) const override {
-    return evaluator_->error_estimate(query, density);
+    return evaluator_->error_estimate(with_wider_lobe(query, variance_), density);
   }
-  std::size_t replaced() const override { return substitute_->count(); }
+  std::size_t replaced() const override { return substitute_->count() + evaluator_->replaced(); }
   std::string name() const override { return evaluator_->name(); }
   std::size_t device_bytes() const override { return evaluator_->device_bytes(); }
   double build_seconds() const override { return evaluator_->build_seconds(); }
   double device_seconds() const override { return evaluator_->device_seconds(); }
 
  private:
+  QuerySource wider(const QuerySource& query) const {
+    return [this, query](std::size_t n) { return with_wider_lobe(query(n), variance_); };
+  }
+
   std::unique_ptr<Evaluator> evaluator_;
+  double variance_;  // that lobes are wider by: Surface::lobe_variance
   std::shared_ptr<Substitute> substitute_;
 };
 

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "host/methods/evaluator.h"
+#include "host/methods/finite_brdf.h"
 #include "host/methods/finite_evaluator.h"
 #include "host/methods/map/map_query.h"
 #include "host/methods/patch_brdf.h"
@@ -34,7 +37,17 @@ std::unique_ptr<Evaluator> Method::make_own(Device*, const Surface*, const Metho
   refuse_densities();
 }
 
-std::unique_ptr<PatchBrdf> Method::make_brdf(Device*, const Surface*, const MethodSettings&) const {
+std::unique_ptr<PatchBrdf> Method::make_brdf(Device* device, const Surface* surface,
+                                             const MethodSettings& settings) const {
+  if (surface != nullptr && surface->lobe_variance() > 0)
+    throw UsageError(fmt::format(
+        "precision \"widen\": the BRDF of {} takes its lobes as they are; say a roughness that is wider by "
+        "{:.2g}, in squares",
+        name(), std::sqrt(surface->lobe_variance())));
+  return with_finite_answers(make_own_brdf(device, surface, settings));
+}
+
+std::unique_ptr<PatchBrdf> Method::make_own_brdf(Device*, const Surface*, const MethodSettings&) const {
   refuse_brdf();
 }
 

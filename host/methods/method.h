@@ -86,14 +86,15 @@ class Method {
   /// Whether its BRDF never scatters more than it receives.
   virtual bool conserves_energy(const MethodSettings&) const { return true; }
 
-  /// Answers that are not finite are replaced by the oracle's, and counted: Evaluator::replaced.
+  /// Answers that are not finite are replaced and counted: by the oracle's (Evaluator::replaced), or by 0 of
+  /// a BRDF (PatchBrdf::replaced).
   /// @param device, surface have to outlive what is made; null where the traits say that it needs none.
   /// Throws UsageError where the method has no such thing, and for a surface or settings that it does not
   /// take.
   std::unique_ptr<Evaluator> make(Device* device, const Surface* surface,
                                   const MethodSettings& settings) const;
-  virtual std::unique_ptr<PatchBrdf> make_brdf(Device* device, const Surface* surface,
-                                               const MethodSettings& settings) const;
+  std::unique_ptr<PatchBrdf> make_brdf(Device* device, const Surface* surface,
+                                       const MethodSettings& settings) const;
 
   /// Why a query cannot be answered, or empty when it can. @param surface null without a map.
   std::string query_problem(const Query& query, const Surface* surface) const;
@@ -119,6 +120,8 @@ class Method {
   /// `make`, with answers as they come.
   virtual std::unique_ptr<Evaluator> make_own(Device* device, const Surface* surface,
                                               const MethodSettings& settings) const;
+  virtual std::unique_ptr<PatchBrdf> make_own_brdf(Device* device, const Surface* surface,
+                                                   const MethodSettings& settings) const;
   [[noreturn]] void refuse_brdf() const;
   [[noreturn]] void refuse_densities() const;
 };

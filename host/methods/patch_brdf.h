@@ -43,6 +43,10 @@ class PatchBrdf {
   virtual std::vector<Albedo> energy(const std::vector<ViewQuery>& queries) = 0;
   virtual std::vector<BrdfSample> sample(const std::vector<SampleQuery>& queries) = 0;
 
+  /// Answers so far that were not finite, and were replaced by 0 or by a definition's; see
+  /// with_finite_answers.
+  virtual std::size_t replaced() const { return 0; }
+
   virtual std::string name() const = 0;
   virtual std::size_t device_bytes() const = 0;  ///< of its structures, without batches
   virtual double build_seconds() const = 0;      ///< that its structures took on the host

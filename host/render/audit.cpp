@@ -51,7 +51,7 @@ std::vector<AuditedSample> audit(const std::vector<AuditSample>& samples,
     for (std::size_t n = 0; n < samples.size(); ++n) {
       if (samples[n].evaluator != static_cast<int>(surface)) continue;
       places.push_back(n);
-      queries.push_back(samples[n].query);
+      queries.push_back(with_wider_lobe(samples[n].query, surfaces[surface]->lobe_variance()));
     }
     if (queries.empty()) continue;
     const std::vector<reference::OracleResult> answers =

@@ -11,6 +11,7 @@
 #include "host/methods/triangles/triangle_evaluator.h"
 #include "host/scene/keyframes.h"
 #include "host/surface/in_time.h"
+#include "host/surface/map_precision.h"
 
 namespace mica::host {
 namespace {
@@ -62,6 +63,7 @@ BuiltJob::BuiltJob(const Job& job, const Plan& plan, Device& device, int frame)
       frame_(frame),
       inputs_(hash_of_inputs(job)),
       surface_findings_(plan.evaluators.size()),
+      precision_errors_(plan.evaluators.size()),
       choices_(plan.evaluators.size()),
       surfaces_(make_surfaces()),
       scene_(make_scene()) {
@@ -75,7 +77,7 @@ BuiltJob::BuiltJob(const Job& job, const Plan& plan, Device& device, int frame)
 void BuiltJob::build_evaluator(std::size_t n) {
   const PlannedEvaluator& planned = plan_.evaluators[n];
   past_device_seconds_ += device_seconds_of(n);
-  if (evaluators_[n]) past_replaced_answers_ += evaluators_[n]->replaced();
+  past_replaced_answers_ += replaced_answers_of(n);
   brdfs_[n].reset();  // buffers go before the new ones come
   evaluators_[n].reset();
   if (planned.asks_densities) evaluators_[n] = make_density_evaluator(n);
@@ -169,10 +171,19 @@ void BuiltJob::go_to(int frame) {
   build_seconds_ = building.seconds();
 }
 
+double BuiltJob::least_roughness(std::size_t n) const {
+  double least = 1;
+  for (std::size_t m = 0; m < job_.scene.materials.size(); ++m)
+    if (plan_.evaluator_of_material[m] == static_cast<int>(n))
+      least = std::min(least, job_.scene.materials[m].roughness);
+  return least;
+}
+
 Surface BuiltJob::make_surface_of(std::size_t n, int frame) {
   const SurfaceDescription& description = job_.surfaces[plan_.evaluators[n].surface_index];
   SurfaceReport report;
   Surface surface = make_surface(after(description, job_.frames.seconds(frame)), &report);
+  precision_errors_[n] = report_precision(surface, least_roughness(n), &report);
   const auto named = [&](std::vector<std::string> texts) {
     for (std::string& text : texts) text = fmt::format("surface {}: {}", description.name, text);
     return texts;
@@ -281,11 +292,20 @@ std::unique_ptr<Evaluator> BuiltJob::make_exact_evaluator(std::size_t n) const {
   return surface(n) ? std::make_unique<TriangleEvaluator>(device_, *surface(n)) : nullptr;
 }
 
+double BuiltJob::precision_error() const {
+  double largest = 0;
+  for (const double error : precision_errors_) largest = std::max(largest, error);
+  return largest;
+}
+
 std::size_t BuiltJob::replaced_answers() const {
   std::size_t count = past_replaced_answers_;
-  for (const std::unique_ptr<Evaluator>& evaluator : evaluators_)
-    if (evaluator) count += evaluator->replaced();
+  for (std::size_t n = 0; n < evaluators_.size(); ++n) count += replaced_answers_of(n);
   return count;
+}
+
+std::size_t BuiltJob::replaced_answers_of(std::size_t n) const {
+  return (evaluators_[n] ? evaluators_[n]->replaced() : 0) + (brdfs_[n] ? brdfs_[n]->replaced() : 0);
 }
 
 PendingBlock::PendingBlock(TracedRows rows, const BuiltJob& built)

@@ -47,6 +47,8 @@ class BuiltJob {
   std::size_t device_bytes() const;  ///< of all structures, as allocated
   double device_seconds() const;     ///< that kernels ran so far, by the device's clock
 
+  /// The largest of its surfaces; see mica::host::precision_error. For each, its materials' least roughness.
+  double precision_error() const;
   std::size_t replaced_answers() const;  ///< so far; see Evaluator::replaced
 
   const std::string& inputs() const { return inputs_; }  ///< hash_of_inputs of the job
@@ -55,6 +57,7 @@ class BuiltJob {
 
  private:
   Surface make_surface_of(std::size_t n, int frame);
+  double least_roughness(std::size_t n) const;  ///< of its materials
   void build_evaluator(std::size_t n);
   Scene scene_at(int frame) const;
   std::vector<std::optional<Surface>> make_surfaces();
@@ -62,6 +65,7 @@ class BuiltJob {
   LightGathering gathering() const;
   PixelSettings pixels() const;
   double device_seconds_of(std::size_t n) const;
+  std::size_t replaced_answers_of(std::size_t n) const;
   Scene make_scene();
   std::unique_ptr<Evaluator> make_density_evaluator(std::size_t n);
   void calibrate(std::size_t n, Evaluator* evaluator);
@@ -78,6 +82,7 @@ class BuiltJob {
   std::size_t past_replaced_answers_ = 0;
   // By PlannedEvaluator: what was found of the surface, what its method chose, and the surface.
   std::vector<Findings> surface_findings_;
+  std::vector<double> precision_errors_;  // of surfaces
   std::vector<std::vector<std::string>> choices_;
   std::vector<std::optional<Surface>> surfaces_;
   Scene scene_;

@@ -85,7 +85,8 @@ std::vector<std::string> describe_repairs(int frame, const RenderResult& result)
   const auto say = [&](std::size_t count, const char* what) {
     if (count > 0) lines.push_back(fmt::format("frame {}: {} {}", frame, count, what));
   };
-  say(result.replaced_answers, "densities were not finite: the oracle answered in their place");
+  say(result.replaced_answers,
+      "answers of methods were not finite: in their place are the oracle's, or 0 of a BRDF");
   say(result.repairs.not_finite,
       "values of pixels or samples were not finite in single precision: left at 0");
   say(result.repairs.negative, "pixels were negative: raised to 0");
@@ -139,6 +140,7 @@ RenderResult render_frame(BuiltJob& built, int frame, const DeviceInfo& device,
   result.device_bytes = built.device_bytes();
   result.device_seconds = built.device_seconds() - device_seconds;
   result.replaced_answers = built.replaced_answers() - replaced_answers;
+  result.precision_error = built.precision_error();
   result.surface_notes = built.notes();
   result.surface_warnings = built.warnings();
   for (const std::string& line : describe_repairs(frame, result)) result.surface_warnings.push_back(line);

@@ -39,7 +39,8 @@ struct RenderResult {
   AuditResult audit;  ///< of queries
   PictureAudit picture_audit;
   FilmRepairs repairs;
-  std::size_t replaced_answers = 0;  ///< that were not finite, and are the oracle's
+  double precision_error = 0;        ///< of maps, by the steps of their files: BuiltJob::precision_error
+  std::size_t replaced_answers = 0;  ///< that were not finite: the oracle's, or 0 of a BRDF
   std::vector<std::string> surface_notes, surface_warnings;
 };
 

@@ -84,7 +84,8 @@ std::string render_json(const Job& job, const DeviceInfo& device, const RenderRe
   json["audit"] = {{"samples", result.audit.samples},
                    {"relative_l2", result.audit.relative_l2},
                    {"percentile_99", result.audit.percentile_99},
-                   {"maximum", result.audit.maximum}};
+                   {"maximum", result.audit.maximum},
+                   {"precision", result.precision_error}};
   json["picture_audit"] = {{"pixels", result.picture_audit.pixels},
                            {"relative_l2", result.picture_audit.relative_l2},
                            {"upper_bound", result.picture_audit.upper_bound},

@@ -34,6 +34,16 @@ struct Words<GreenDirection> {
   static constexpr Word<GreenDirection> all[] = {{"up", GreenDirection::up}, {"down", GreenDirection::down}};
 };
 
+/// What becomes of a file's steps, where they are coarse beside a roughness: normals stay as they are, are
+/// restored between the steps where their neighbours tell, or lobes are wider by the variance of rounding.
+enum class Precision { as_is, restore, widen };
+
+template <>
+struct Words<Precision> {
+  static constexpr Word<Precision> all[] = {
+      {"as-is", Precision::as_is}, {"restore", Precision::restore}, {"widen", Precision::widen}};
+};
+
 /// A normal map in a file. Settings that the job leaves out are derived from the pixel type and logged.
 struct MapFile {
   std::string path;
@@ -43,6 +53,7 @@ struct MapFile {
   GreenDirection green = GreenDirection::up;
   TexelRepair invalid = TexelRepair::refuse;
   double height_scale = 1.0;  ///< `height` only: texels of height per unit of the image's value
+  Precision precision = Precision::as_is;
 };
 
 /// Heightfield by inverse FFT of a Gaussian power spectrum with random phase ([Yan14] snail).

@@ -8,6 +8,7 @@
 
 #include "host/surface/disk.h"
 #include "host/surface/fill_holes.h"
+#include "host/surface/map_precision.h"
 #include "mica/error.h"
 
 namespace mica::host {
@@ -262,7 +263,7 @@ class Decoder {
 }  // namespace
 
 std::vector<Eigen::Vector2d> decode_normals(const MapFile& file, const MapPixels& pixels,
-                                            SurfaceReport& report) {
+                                            SurfaceReport& report, double* step) {
   if (!std::isfinite(file.height_scale)) {
     throw UsageError(
         fmt::format("{}: height_scale is {}, expected a finite number", file.path, file.height_scale));
@@ -272,12 +273,21 @@ std::vector<Eigen::Vector2d> decode_normals(const MapFile& file, const MapPixels
     report.warnings.push_back("green = \"down\" has no effect on a height map");
   }
   report_quantisation(file, encoding, pixels, report);
+  if (step != nullptr) *step = slope_step(file, encoding, pixels);
+  if (encoding == Encoding::height && file.precision == Precision::restore)
+    throw UsageError(file.path + ": precision \"restore\" is for normals; found heights");
   return Decoder(file, encoding, pixels, report).decode();
 }
 
 Surface load_map(const MapFile& file, Interpolation interpolation, SurfaceReport& report) {
   const MapPixels pixels = read_map_pixels(file.path, report, file.choice);
-  return Surface(pixels.width, pixels.height, interpolation, decode_normals(file, pixels, report));
+  double step = 0;
+  std::vector<Eigen::Vector2d> normals = decode_normals(file, pixels, report, &step);
+  if (file.precision == Precision::restore && step > 0)
+    restore_normals(pixels.width, pixels.height, step, &normals);
+  Surface surface(pixels.width, pixels.height, interpolation, std::move(normals));
+  surface.note_steps({step, file.precision == Precision::widen});
+  return surface;
 }
 
 }  // namespace mica::host

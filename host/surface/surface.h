@@ -20,6 +20,16 @@ class Surface {
   /// Throws UsageError when the sizes disagree or a normal is not finite or not inside the unit disk.
   Surface(int width, int height, Interpolation interpolation, std::vector<Eigen::Vector2d> normals);
 
+  /// What its source could tell of normals.
+  struct Steps {
+    double step = 0;      ///< between neighbouring values of s; 0: too fine to matter
+    bool widens = false;  ///< lobes are wider by the variance of rounding
+  };
+  void note_steps(const Steps& steps) { steps_ = steps; }
+  double step() const { return steps_.step; }
+  /// What a lobe's covariance on the disk is wider by, along every axis; see Precision.
+  double lobe_variance() const { return steps_.widens ? steps_.step * steps_.step / 12 : 0; }
+
   int width() const { return width_; }
   int height() const { return height_; }
   Interpolation interpolation() const { return interpolation_; }
@@ -39,6 +49,7 @@ class Surface {
 
   int width_, height_;
   Interpolation interpolation_;
+  Steps steps_;
   std::vector<Eigen::Vector2d> normals_;  ///< row j = 0 (v near 0) first
 };
 

@@ -1,4 +1,4 @@
-// One answer that is not finite costs nobody else's, and is the oracle's.
+// One answer that is not finite costs nobody else's: it is the oracle's, the definition's, or 0.
 #include "host/methods/finite_evaluator.h"
 
 #include <gtest/gtest.h>
@@ -6,8 +6,11 @@
 #include <cmath>
 #include <limits>
 
+#include "host/methods/finite_brdf.h"
+#include "host/methods/grid/grid_evaluator.h"
 #include "host/methods/map/image_window.h"
 #include "host/methods/ready_densities.h"
+#include "host/reference/glint_grid.h"
 #include "host/reference/oracle.h"
 #include "host/surface/surface.h"
 #include "host/surface/texel_footprint.h"
@@ -85,6 +88,71 @@ TEST(FiniteEvaluator, RepairsPicturesToo) {
 TEST(FiniteEvaluator, RefusesWhereNoOracleKnowsBetter) {
   const auto evaluator = with_finite_answers(std::make_unique<Failing>(), nullptr);
   EXPECT_THROW(evaluator->evaluate(queries_on(bumps())), DeviceError);
+}
+
+/// Glints that differ from query to query, of two colours; each has numbers of its own.
+TEST(FiniteEvaluator, GlintsOfAGridAreThoseOfItsDefinition) {
+  const std::vector<Query> queries = queries_on(bumps());
+  std::vector<GlintPoint> points(queries.size());
+  for (std::size_t n = 0; n < points.size(); ++n) points[n].density = 1000.0f * static_cast<float>(n + 1);
+  std::vector<std::vector<float>> rows(2, std::vector<float>(queries.size(), kGood));
+  rows[1][2] = std::nanf(""), rows[0][5] = rows[1][5] = std::numeric_limits<float>::infinity();
+  EXPECT_EQ(replace_what_is_not_finite(queries, points, &rows), 2u);
+  for (std::size_t n = 0; n < queries.size(); ++n) {
+    const std::vector<double> exact =
+        reference::GlintProcess(points[n]).densities_of(queries[n], static_cast<int>(rows.size()));
+    for (std::size_t color = 0; color < rows.size(); ++color)
+      EXPECT_EQ(rows[color][n], n == 2 || n == 5 ? static_cast<float>(exact[color]) : kGood) << n;
+  }
+}
+
+/// Every number of an answer in turn is none.
+class FailingBrdf : public PatchBrdf {
+ public:
+  std::vector<BrdfValue> evaluate(const std::vector<BrdfQuery>&) override {
+    return {{kNone, 0, 0}, {kGood, kGood, kGood}, {0, kNone, 0}, {0, 0, kNone}};
+  }
+  std::vector<Albedo> energy(const std::vector<ViewQuery>&) override {
+    return {{kNone, 0}, {0, kNone}, {kGood, kGood}};
+  }
+  std::vector<BrdfSample> sample(const std::vector<SampleQuery>&) override {
+    const Eigen::Vector3f up(0, 0, 1);
+    return {{up, kGood, kGood, kGood},
+            {up * kNone, kGood, 0, 0},
+            {up, kNone, 0, 0},
+            {up, kGood, kNone, 0},
+            {up, kGood, 0, kNone}};
+  }
+  std::string name() const override { return "failing"; }
+  std::size_t device_bytes() const override { return 0; }
+  double build_seconds() const override { return 0; }
+  double device_seconds() const override { return 0; }
+
+ private:
+  static constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+};
+
+TEST(FiniteBrdf, IsZeroWhereItIsNotFinite) {
+  const auto brdf = with_finite_answers(std::make_unique<FailingBrdf>());
+  const std::vector<BrdfValue> values = brdf->evaluate({});
+  for (std::size_t n = 0; n < values.size(); ++n) {
+    const float expected = n == 1 ? kGood : 0;
+    EXPECT_EQ(values[n].single, expected) << n;
+    EXPECT_EQ(values[n].multiple, expected) << n;
+    EXPECT_EQ(values[n].pdf, expected) << n;
+  }
+  const std::vector<Albedo> albedos = brdf->energy({});
+  for (std::size_t n = 0; n < albedos.size(); ++n) {
+    EXPECT_EQ(albedos[n].single, n == 2 ? kGood : 0) << n;
+    EXPECT_EQ(albedos[n].lost, n == 2 ? kGood : 0) << n;
+  }
+  const std::vector<BrdfSample> samples = brdf->sample({});
+  for (std::size_t n = 0; n < samples.size(); ++n) {
+    EXPECT_EQ(samples[n].pdf, n == 0 ? kGood : 0) << n;
+    EXPECT_EQ(samples[n].weight_single, n == 0 ? kGood : 0) << n;
+    EXPECT_TRUE(samples[n].light.allFinite()) << n;
+  }
+  EXPECT_EQ(brdf->replaced(), 3u + 2u + 4u);
 }
 
 }  // namespace

@@ -22,8 +22,8 @@ class NormalMapMethod : public Method {
     return {0, sizeof(Eigen::Vector2d) * asked.width * asked.height, "none"};
   }
 
-  std::unique_ptr<PatchBrdf> make_brdf(Device*, const Surface* surface,
-                                       const MethodSettings&) const override {
+  std::unique_ptr<PatchBrdf> make_own_brdf(Device*, const Surface* surface,
+                                           const MethodSettings&) const override {
     return std::make_unique<NormalMapBrdf>(*surface);
   }
 };

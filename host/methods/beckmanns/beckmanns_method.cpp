@@ -52,8 +52,8 @@ class BeckmannsMethod : public Method {
     return std::make_unique<BeckmannEvaluator>(*device, *surface, mixture);
   }
 
-  std::unique_ptr<PatchBrdf> make_brdf(Device* device, const Surface* surface,
-                                       const MethodSettings& settings) const override {
+  std::unique_ptr<PatchBrdf> make_own_brdf(Device* device, const Surface* surface,
+                                           const MethodSettings& settings) const override {
     const auto& own = settings_as<BeckmannSettings>(settings);
     BeckmannBrdfSettings brdf;
     brdf.masking = own.masking, brdf.elements = own.elements;

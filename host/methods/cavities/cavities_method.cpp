@@ -63,8 +63,8 @@ class CavitiesMethod : public Method {
     return size;
   }
 
-  std::unique_ptr<PatchBrdf> make_brdf(Device* device, const Surface* surface,
-                                       const MethodSettings& settings) const override {
+  std::unique_ptr<PatchBrdf> make_own_brdf(Device* device, const Surface* surface,
+                                           const MethodSettings& settings) const override {
     const auto& own = settings_as<CavityMethodSettings>(settings);
     CavitySettings cavities;
     cavities.compensation = own.compensation, cavities.energy = own.energy,

@@ -26,6 +26,7 @@ class GridBrdf : public PatchBrdf {
   std::vector<Albedo> energy(const std::vector<ViewQuery>& queries) override;
   std::vector<BrdfSample> sample(const std::vector<SampleQuery>& queries) override;
 
+  std::size_t replaced() const override { return densities_.replaced(); }
   std::string name() const override { return "grid"; }
   std::size_t device_bytes() const override { return 0; }
   double build_seconds() const override { return 0; }

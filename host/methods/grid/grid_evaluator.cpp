@@ -8,6 +8,7 @@
 
 #include "host/device/launch.h"
 #include "host/methods/map/first_order.h"
+#include "host/reference/glint_grid.h"
 #include "mica/error.h"
 
 namespace mica::host {
@@ -18,11 +19,28 @@ std::string grid_kernel_options(Distribution distribution, const GridFeatures& f
                      features.roulette ? 1 : 0);
 }
 
+std::size_t replace_what_is_not_finite(const std::vector<Query>& queries,
+                                       const std::vector<GlintPoint>& points,
+                                       std::vector<std::vector<float>>* rows) {
+  std::size_t count = 0;
+  for (std::size_t n = 0; n < queries.size(); ++n) {
+    if (std::all_of(rows->begin(), rows->end(), [n](const auto& row) { return std::isfinite(row[n]); }))
+      continue;
+    const reference::GlintProcess process(points.size() == 1 ? points.front() : points[n]);
+    const std::vector<double> exact = process.densities_of(queries[n], static_cast<int>(rows->size()));
+    for (std::size_t color = 0; color < rows->size(); ++color)
+      (*rows)[color][n] = static_cast<float>(exact[color]);
+    ++count;
+  }
+  return count;
+}
+
 /// Queries on the device and the memory that it reads and writes meanwhile.
 class PendingGrid : public PendingDensities {
  public:
-  PendingGrid(std::size_t queries, int colors) : rows(static_cast<std::size_t>(colors)) {
-    for (std::vector<float>& row : rows) row.resize(queries);
+  PendingGrid(std::vector<Query> asked, std::vector<GlintPoint> there, int colors)
+      : queries(std::move(asked)), points(std::move(there)), rows(static_cast<std::size_t>(colors)) {
+    for (std::vector<float>& row : rows) row.resize(queries.size());
   }
   ~PendingGrid() override {
     for (const cl::Event& event : done) clWaitForEvents(1, &event());
@@ -33,12 +51,9 @@ class PendingGrid : public PendingDensities {
       if (!done.empty()) cl::Event::waitForEvents(done);
       for (const cl::Event& kernel : kernels) *device_seconds += seconds_of(kernel);
     });
-    for (std::vector<float>& row : rows) {
-      for (float& density : row) {
-        if (!std::isfinite(density)) throw DeviceError("evaluating grid: a density is not finite");
-        density = std::max(density, 0.0f);
-      }
-    }
+    *replaced += replace_what_is_not_finite(queries, points, &rows);
+    for (std::vector<float>& row : rows)
+      for (float& density : row) density = std::max(density, 0.0f);
     if (rows.size() == 1) return rows.front();
     std::vector<float> densities = rows.front();
     for (std::size_t color = 1; color < rows.size(); ++color)
@@ -47,11 +62,14 @@ class PendingGrid : public PendingDensities {
   }
   float density_of_color(std::size_t color, std::size_t query) const override { return rows[color][query]; }
 
+  std::vector<Query> queries;
+  std::vector<GlintPoint> points;
   std::deque<GridBatch> batches;  // a deque: what the device reads stays where it is
   std::vector<std::vector<float>> rows;
   std::vector<cl::Buffer> buffers;  // kept, so that memory does not depend on who is faster, host or device
   std::vector<cl::Event> kernels, done;
   std::shared_ptr<double> device_seconds;
+  std::shared_ptr<std::size_t> replaced;
 };
 
 GridEvaluator::GridEvaluator(Device& device, const GlintGrid& grid, std::optional<WaveForm> wave_form,
@@ -74,8 +92,9 @@ std::unique_ptr<PendingDensities> GridEvaluator::start(const std::vector<Query>&
 
 std::unique_ptr<PendingDensities> GridEvaluator::start_at(const std::vector<Query>& queries,
                                                           const std::vector<GlintPoint>& points) {
-  auto pending = std::make_unique<PendingGrid>(queries.size(), features_.colors);
+  auto pending = std::make_unique<PendingGrid>(queries, points, features_.colors);
   pending->device_seconds = device_seconds_;
+  pending->replaced = replaced_;
   for (std::size_t first = 0; first < queries.size(); first += batch_queries_) {
     const std::size_t count = std::min(batch_queries_, queries.size() - first);
     enqueue(to_grid_batch(queries, first, count, points), first, count, pending.get());

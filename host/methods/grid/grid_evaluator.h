@@ -17,6 +17,13 @@ struct GridFeatures {
   bool roulette = false;  ///< points with a share or a part of their glints
 };
 
+/// Replaces densities that are not finite by those of the definition, in double precision.
+/// @param rows a density a query, for each colour. @param points one for all queries, or one for each.
+/// Returns how many queries had one.
+std::size_t replace_what_is_not_finite(const std::vector<Query>& queries,
+                                       const std::vector<GlintPoint>& points,
+                                       std::vector<std::vector<float>>* rows);
+
 std::string grid_kernel_options(Distribution distribution, const GridFeatures& features);
 
 class PendingGrid;
@@ -35,6 +42,7 @@ class GridEvaluator : public Evaluator {
   /// @param points what the glints are at each query; all of the evaluator's distribution.
   std::unique_ptr<PendingDensities> start_at(const std::vector<Query>& queries,
                                              const std::vector<GlintPoint>& points) override;
+  std::size_t replaced() const override { return *replaced_; }
   std::string name() const override { return "grid"; }
   std::size_t device_bytes() const override { return 0; }
   double build_seconds() const override { return 0; }
@@ -48,7 +56,9 @@ class GridEvaluator : public Evaluator {
   GridFeatures features_;
   WaveForm wave_form_;
   std::size_t batch_queries_;
-  std::shared_ptr<double> device_seconds_ = std::make_shared<double>(0.0);  // shared with pending densities
+  // Shared with pending densities.
+  std::shared_ptr<double> device_seconds_ = std::make_shared<double>(0.0);
+  std::shared_ptr<std::size_t> replaced_ = std::make_shared<std::size_t>(0);
   cl::Kernel kernel_;
 };
 

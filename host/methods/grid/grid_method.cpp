@@ -71,8 +71,8 @@ class GridMethod : public Method {
                                            glint_features(glints));
   }
 
-  std::unique_ptr<PatchBrdf> make_brdf(Device* device, const Surface*,
-                                       const MethodSettings& settings) const override {
+  std::unique_ptr<PatchBrdf> make_own_brdf(Device* device, const Surface*,
+                                           const MethodSettings& settings) const override {
     return std::make_unique<GridBrdf>(*device, glints_of(settings));
   }
 

@@ -4,7 +4,6 @@
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <limits>
 
@@ -83,14 +82,12 @@ class QueryBatches::Densities : public PendingDensities {
       for (const cl::Event& kernel : kernels) *device_seconds += seconds_of(kernel);
     });
     // A density is not negative: rounding may leave -0 or a denormal, never more. Several numbers are
-    // something else, and have signs. What is not finite is a density's reader's to replace.
+    // something else, and have signs. What is not finite is the reader's to replace.
     const float least = answers == 1 ? 0.0f : -std::numeric_limits<float>::infinity();
     std::vector<float> ordered(results.size());
     tbb::parallel_for(std::size_t{0}, order.size(), [&](std::size_t n) {
       for (std::size_t k = 0; k < answers; ++k) {
         const float result = results[n * answers + k];
-        if (answers > 1 && !std::isfinite(result))
-          throw DeviceError("evaluating " + method + ": a density is not finite");
         ordered[order[n] * answers + k] = result < least ? least : result;
       }
     });
