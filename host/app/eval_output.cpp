@@ -49,8 +49,9 @@ std::map<std::string, std::string> answers_identity(const RowSource& queries, co
   if (map.path.empty()) return identity;
   identity["map"] = hash_of_file(map.path);
   identity["map options"] = fmt::format(
-      "encoding {} green {} interpolation {} invalid {} part {} channels {} height scale {}", map.encoding,
-      map.green, map.interpolation, map.invalid, map.part, map.channels, map.height_scale);
+      "encoding {} green {} interpolation {} invalid {} part {} channels {} height scale {} precision {}",
+      map.encoding, map.green, map.interpolation, map.invalid, map.part, map.channels, map.height_scale,
+      map.precision);
   return identity;
 }
 
