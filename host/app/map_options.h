@@ -11,7 +11,7 @@ namespace mica::host::app {
 /// Options that say which normal map and how to read it.
 struct MapOptions {
   std::string path, encoding, green = "up", interpolation = "bilinear", invalid = "refuse", part, channels,
-      precision = "as-is";
+                              precision = "as-is";
   double height_scale = 1;
   MaxMemory max_memory;
 };

@@ -260,6 +260,16 @@ class Decoder {
   Tally invalid_, unnormalised_, beyond_rim_;
 };
 
+/// The step of half floats where most normals are: theirs halves with every halving of a number.
+double half_float_step(const std::vector<Eigen::Vector2d>& normals) {
+  constexpr int mantissa_bits = 10, least_exponent = -14;
+  double sum = 0;
+  for (const Eigen::Vector2d& s : normals) sum += s.squaredNorm();
+  const double mean_square = sum / (2 * static_cast<double>(normals.size()));
+  const int exponent = mean_square > 0 ? std::ilogb(std::sqrt(mean_square)) : least_exponent;
+  return std::exp2(std::max(exponent, least_exponent) - mantissa_bits);
+}
+
 }  // namespace
 
 std::vector<Eigen::Vector2d> decode_normals(const MapFile& file, const MapPixels& pixels,
@@ -283,10 +293,16 @@ Surface load_map(const MapFile& file, Interpolation interpolation, SurfaceReport
   const MapPixels pixels = read_map_pixels(file.path, report, file.choice);
   double step = 0;
   std::vector<Eigen::Vector2d> normals = decode_normals(file, pixels, report, &step);
-  if (file.precision == Precision::restore && step > 0)
+  if (pixels.type == MapPixels::Type::floating && step > 0) step = half_float_step(normals);
+  const bool restores = file.precision == Precision::restore && step > 0;
+  if (restores) {
     restore_normals(pixels.width, pixels.height, step, &normals);
+    report.notes.push_back(
+        fmt::format("normals restored between steps of {:.2g} where their neighbours tell", step));
+  }
   Surface surface(pixels.width, pixels.height, interpolation, std::move(normals));
-  surface.note_steps({step, file.precision == Precision::widen});
+  // Of what is left after that no number is known.
+  if (!restores) surface.note_steps({step, file.precision == Precision::widen});
   return surface;
 }
 
