@@ -95,6 +95,8 @@ struct Viewer {
  private:
   SeenLamp see(const LightDescription& light, const SeenPoint& point,
                const Eigen::Vector2d& light_sample) const;
+  void gather(const SeenPoint& point, const std::vector<GlintPlace>& places, const SamplePlace& place,
+              std::vector<LitPoint>* points) const;
   LitBrdf lit_brdf(const GlintQuery& query, const SeenPoint& point, const Illumination& incident) const;
 };
 
