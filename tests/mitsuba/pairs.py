@@ -102,44 +102,44 @@ def pairs(folder):
 
     for light in ("point", "sun", "furnace"):
         for shape in ("plane", "sphere"):
-            add(f"chalk {shape}, {light}", CHALK, diffuse(), LIGHTS[light], 0.02 if shape == "plane" else 0.04, shape,
+            add(f"chalk {shape}, {light}", CHALK, diffuse(), LIGHTS[light], 0.03 if shape == "plane" else 0.015, shape,
                 image="samples = 64\n")
     for light in ("disk", "ball"):
-        add(f"chalk plane, {light}", CHALK, diffuse(), LIGHTS[light], 0.03, samples=256, **LOW)
+        add(f"chalk plane, {light}", CHALK, diffuse(), LIGHTS[light], 0.005, **LOW)
 
     # One lobe about the geometric normal: of a flat map, and of glints that cannot be told from each other.
     for light in ("point", "sun"):
         for alpha in (0.05, 0.15):
             smooth = f'surface = "flat"\nndf = "normalmap"\nroughness = {alpha / 2 ** 0.5}\n' + GOLD
-            add(f"gold sphere, alpha {alpha}, {light}", smooth, gold(alpha), LIGHTS[light], 0.04, "sphere",
+            add(f"gold sphere, alpha {alpha}, {light}", smooth, gold(alpha), LIGHTS[light], 0.01, "sphere",
                 image="subpixels = 8\n", samples=400)
     for distribution in ("beckmann", "ggx"):
         glints = f'ndf = "grid"\ndensity = 1e12\nmicroroughness = 1e-3\ndistribution = "{distribution}"\n' + GOLD
         for alpha in ((0.15, 0.15), (0.2, 0.05), (0.05, 0.2)):
             add(f"gold plane, {distribution} {alpha[0]} {alpha[1]}, point", glints + f"alpha = {list(alpha)}\n",
-                gold(alpha, distribution), LIGHTS["point"], 0.03, **MIRROR)
+                gold(alpha, distribution), LIGHTS["point"], 0.01, **MIRROR)
     narrow = 'surface = "flat"\nroughness = 0.0353553390593\n' + GOLD
     for ndf in ("triangles", "gaussians", "smooth"):
-        add(f"gold plane, {ndf}, point", f'ndf = "{ndf}"\n' + narrow, gold(0.05), LIGHTS["point"], 0.03, **MIRROR)
+        add(f"gold plane, {ndf}, point", f'ndf = "{ndf}"\n' + narrow, gold(0.05), LIGHTS["point"], 0.01, **MIRROR)
 
     sky = environment(f"{folder}/sky.exr")
-    add("chalk sphere, environment", CHALK, diffuse(), sky, 0.05, "sphere", image="samples = 64\n", samples=256)
-    add("gold sphere, environment", 'ndf = "normalmap"\nroughness = 0.0707\nsurface = "flat"\n' + GOLD, gold(0.1), sky, 0.05,
+    add("chalk sphere, environment", CHALK, diffuse(), sky, 0.02, "sphere", image="samples = 64\n", samples=256)
+    add("gold sphere, environment", 'ndf = "normalmap"\nroughness = 0.0707\nsurface = "flat"\n' + GOLD, gold(0.1), sky, 0.02,
         "sphere", image="samples = 64\n", samples=256)
-    found.append(Pair("sky alone", job(CHALK, SPHERE.replace("0, 0, 0.6", "0, 0, -50"), sky[0]), {"light": sky[1]}, 0.02,
+    found.append(Pair("sky alone", job(CHALK, SPHERE.replace("0, 0, 0.6", "0, 0, -50"), sky[0]), {"light": sky[1]}, 0.005,
                       eye=[0, 0, 0], target=[1, 0.4, 0.3], fov=70.0, depth=1))
 
     # A camera that is rolled, and a plane of which the eye sees the edges.
-    add("rolled camera", CHALK, diffuse(), LIGHTS["sun"], 0.05, up=[0.5, 0.2, 0.8], fov=75.0, eye=[2.5, -4.0, 4.0])
+    add("rolled camera", CHALK, diffuse(), LIGHTS["sun"], 0.03, up=[0.5, 0.2, 0.8], fov=75.0, eye=[2.5, -4.0, 4.0])
     bounces = job(CHALK, PLANE + SPHERE, LIGHTS["sun"][0])
     found.append(Pair("chalk sphere on a plane, two bounces", bounces,
-                      {"shape": plane(diffuse()), "sphere": sphere(diffuse()), "light": LIGHTS["sun"][1]}, 0.06,
-                      samples=256, depth=3, image="samples = 32\nmax_bounces = 2\n"))
+                      {"shape": plane(diffuse()), "sphere": sphere(diffuse()), "light": LIGHTS["sun"][1]}, 0.03,
+                      depth=3, image="samples = 32\nmax_bounces = 2\n"))
 
     mesh = '[[shape]]\ntype = "mesh"\nmaterial = "m"\nfile = "{}/quad.obj"\n'.format(folder)
     found.append(Pair("chalk mesh, point", job(CHALK, mesh, LIGHTS["point"][0]),
                       {"shape": {"type": "obj", "filename": f"{folder}/quad.obj", "bsdf": diffuse()},
-                       "light": LIGHTS["point"][1]}, 0.05))
+                       "light": LIGHTS["point"][1]}, 0.03))
 
     # Classic normal mapping on both sides; Mitsuba's bitmaps stand on their heads on a rectangle.
     mapped = {"type": "twosided", "bsdf": {
@@ -150,5 +150,5 @@ def pairs(folder):
         found.append(Pair(f"gold normal map, {light}",
                           job('surface = "flat"\nndf = "normalmap"\nroughness = 0.141421\n' + GOLD, PLANE,
                               LIGHTS[light][0], surface),
-                          {"shape": plane(mapped), "light": LIGHTS[light][1]}, 0.06))
+                          {"shape": plane(mapped), "light": LIGHTS[light][1]}, 0.01))
     return found
