@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <optional>
 
+#include "host/base/glints.h"
+
 namespace mica::host {
 
 /// A Gaussian pixel footprint in texture space: mean in uv (one map period is [0,1)^2, repeat outside) and
@@ -65,6 +67,7 @@ struct BrdfQuery {
   Footprint footprint;
   Eigen::Vector3d view = Eigen::Vector3d::UnitZ(), light = Eigen::Vector3d::UnitZ();
   double roughness = 0.01;  ///< standard deviation of the intrinsic Gaussian on the disk
+  std::optional<GlintPoint> glints = std::nullopt;  ///< for "grid": what they are here; none: as it says
 };
 
 /// One question about all light that a footprint scatters to `view`.
@@ -72,6 +75,7 @@ struct ViewQuery {
   Footprint footprint;
   Eigen::Vector3d view = Eigen::Vector3d::UnitZ();
   double roughness = 0.01;
+  std::optional<GlintPoint> glints = std::nullopt;
 };
 
 /// A direction to be drawn.

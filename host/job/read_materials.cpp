@@ -128,6 +128,13 @@ std::vector<MaterialDescription> read_materials(TableReader& job,
     if (const GlintsDescription* const glints = material.settings->glints()) material.glints = *glints;
     table.read_table("specular", [&](TableReader& specular) { material.specular = read_specular(specular); });
     table.read("diffuse", material.diffuse, kReflectance);
+    table.read("multiple_scattering", material.multiple_scattering);
+    if (material.multiple_scattering == MultipleScattering::kept && method.traits().lit_by_brdf)
+      table.report(
+          "multiple_scattering",
+          fmt::format("found \"kept\" beside ndf {}, whose BRDF answers for its own energy; expected "
+                      "a density of normals, as triangles",
+                      in_quotes(material.ndf)));
     table.read_table("coat", [&](TableReader& coat) { material.coat = read_coat(coat); });
     materials.push_back(std::move(material));
   });

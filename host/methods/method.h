@@ -81,8 +81,6 @@ class Method {
 
   /// Whether materials with these settings may share what is made. @param gathers light from all around.
   virtual bool share(const MethodSettings& a, const MethodSettings& b, bool gathers) const;
-  /// Why its BRDF cannot gather light from all around.
-  virtual MethodSettings::Problem gathering_problem(const MethodSettings&) const { return {}; }
   /// Whether its BRDF never scatters more than it receives.
   virtual bool conserves_energy(const MethodSettings&) const { return true; }
 

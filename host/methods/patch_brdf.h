@@ -17,6 +17,7 @@ struct BrdfValue {
   float single = 0;    ///< f_P(o, i) times the patch's cosine, of light that bounced once, without Fresnel
   float multiple = 0;  ///< the same of light that bounced more often; 0 for models without it
   float pdf = 0;       ///< with which `sample` draws i, per steradian
+  Eigen::Vector3f tint = Eigen::Vector3f::Ones();  ///< of the facets that mirror i, where they have colours
 };
 
 /// Shares of the light that a white patch scatters to a view. [Che19] Eqs. 15 and 18.
@@ -30,6 +31,7 @@ struct BrdfSample {
   Eigen::Vector3f light = Eigen::Vector3f::Zero();
   float pdf = 0;  ///< 0: nothing was drawn (the direction fell below the horizon); weights are 0 then
   float weight_single = 0, weight_multiple = 0;
+  Eigen::Vector3f tint = Eigen::Vector3f::Ones();
 };
 
 /// A BRDF that is normalised for the patch of surface that a footprint sees. Answers depend on the query

@@ -24,11 +24,11 @@ double cavity_masking(const Eigen::Vector3d& to_eye, const Eigen::Vector3d& to_l
 
 }  // namespace
 
-double glint_masking(const GlintsDescription& glints, const Eigen::Vector2d& alpha,
-                     const Eigen::Vector3d& to_eye, const Eigen::Vector3d& to_light) {
-  if (glints.masking == GlintsDescription::Masking::cavity) return cavity_masking(to_eye, to_light);
-  return 1 / (1 + smith_lambda(glints.distribution, alpha, to_eye) +
-              smith_lambda(glints.distribution, alpha, to_light));
+double glint_masking(Distribution distribution, GlintsDescription::Masking masking,
+                     const Eigen::Vector2d& alpha, const Eigen::Vector3d& to_eye,
+                     const Eigen::Vector3d& to_light) {
+  if (masking == GlintsDescription::Masking::cavity) return cavity_masking(to_eye, to_light);
+  return 1 / (1 + smith_lambda(distribution, alpha, to_eye) + smith_lambda(distribution, alpha, to_light));
 }
 
 }  // namespace mica::host

@@ -22,13 +22,14 @@ constexpr double kUnusedAlpha = 0.1;  // of materials that no shape has
 constexpr double kGoldenRatio =
     0.6180339887498949;  // whose multiples, less whole numbers, fill [0, 1) evenly
 
-/// Beckmann roughness of a map as a whole, for Smith's G: slopes of variance alpha^2 / 2 an axis, and the
-/// roughness.
-double masking_alpha(const Surface& surface, double roughness) {
-  double sum = 0;
-  for (const Eigen::Vector2d& s : surface.normals()) sum += s.squaredNorm() / (1 - s.squaredNorm());
-  const double slope_variance = sum / static_cast<double>(surface.normals().size());
-  return std::sqrt(slope_variance + 2 * roughness * roughness);
+/// The normals of a map as a whole, and of its roughness.
+SmoothLobe lobe_of(const Surface& surface, double roughness) {
+  Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
+  for (const Eigen::Vector2d& s : surface.normals()) sum += s * s.transpose() / (1 - s.squaredNorm());
+  return SmoothLobe(Distribution::beckmann,
+                    sum / static_cast<double>(surface.normals().size()) +
+                        roughness * roughness * Eigen::Matrix2d::Identity(),
+                    SmoothLobe::Masking::smith);
 }
 
 /// Several materials may share a surface, whose lines are said once.
@@ -148,7 +149,7 @@ std::vector<std::string> BuiltJob::warnings() const {
 }
 
 Scene BuiltJob::scene_at(int frame) const {
-  return scene_.with_view(camera_at(job_.scene, frame), lights_at(job_.scene, frame), masking_alphas(),
+  return scene_.with_view(camera_at(job_.scene, frame), lights_at(job_.scene, frame), smooth_lobes(),
                           pixels());
 }
 
@@ -201,19 +202,19 @@ std::vector<std::optional<Surface>> BuiltJob::make_surfaces() {
   return surfaces;
 }
 
-std::vector<double> BuiltJob::masking_alphas() const {
-  std::vector<double> alphas;
+std::vector<SmoothLobe> BuiltJob::smooth_lobes() const {
+  std::vector<SmoothLobe> lobes;
   for (std::size_t n = 0; n < job_.scene.materials.size(); ++n) {
     const int evaluator = plan_.evaluator_of_material[n];
     const MaterialDescription& material = job_.scene.materials[n];
     if (evaluator < 0) {
-      alphas.push_back(kUnusedAlpha);
+      lobes.emplace_back(kUnusedAlpha);
     } else {
-      alphas.push_back(material.glints ? std::sqrt(material.glints->alpha.prod())
-                                       : masking_alpha(*surfaces_[evaluator], material.roughness));
+      lobes.push_back(material.glints ? SmoothLobe(*material.glints, material.glints->alpha)
+                                      : lobe_of(*surfaces_[evaluator], material.roughness));
     }
   }
-  return alphas;
+  return lobes;
 }
 
 LightGathering BuiltJob::gathering() const {
@@ -250,7 +251,7 @@ Scene BuiltJob::make_scene() {
   SceneDescription description = job_.scene;
   description.camera = camera_at(job_.scene, frame_);
   description.lights = lights_at(job_.scene, frame_);
-  Scene scene(description, job_.image.width, job_.image.height, pixels(), masking_alphas(), gathering());
+  Scene scene(description, job_.image.width, job_.image.height, pixels(), smooth_lobes(), gathering());
   scene_seconds_ = watch.seconds();
   return scene;
 }

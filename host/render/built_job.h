@@ -61,7 +61,7 @@ class BuiltJob {
   void build_evaluator(std::size_t n);
   Scene scene_at(int frame) const;
   std::vector<std::optional<Surface>> make_surfaces();
-  std::vector<double> masking_alphas() const;
+  std::vector<SmoothLobe> smooth_lobes() const;
   LightGathering gathering() const;
   PixelSettings pixels() const;
   double device_seconds_of(std::size_t n) const;

@@ -52,7 +52,8 @@ std::size_t gather(const BuiltJob& built, const TracedRows& rows, std::size_t fi
   points.reserve(last - first);
   for (std::size_t n = first; n < last; ++n) {
     const LitPoint& point = rows.points[n];
-    points.emplace_back(context, point, random_bits(seed, point.key, point.subpixel));
+    const std::uint64_t stream = point.subpixel + (std::uint64_t{point.process} << 32);
+    points.emplace_back(context, point, random_bits(seed, point.key, stream));
   }
   tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t n) { points[n].draw(); });
 

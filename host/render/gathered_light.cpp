@@ -21,13 +21,6 @@ enum Stream : std::uint64_t {
   kBrdfPath
 };
 
-Color mean_color(const MaterialDescription& material) {
-  if (!material.glints || material.glints->colors.empty()) return Color::Ones();
-  Color sum = Color::Zero();
-  for (const Eigen::Vector3d& color : material.glints->colors) sum += color;
-  return sum / static_cast<double>(material.glints->colors.size());
-}
-
 }  // namespace
 
 GatheredLight::GatheredLight(const GatheringContext& context, const LitPoint& point, std::uint64_t key)
@@ -37,11 +30,15 @@ GatheredLight::GatheredLight(const GatheringContext& context, const LitPoint& po
       key_(key),
       view_(point.frame.to_local(point.to_eye)),
       crossing_(context.scene.layers(point.material), view_),
-      smooth_(context.scene.layers(point.material), SmoothMaterial::Lobes::without_normals),
-      tint_(mean_color(material_)) {}
+      smooth_(context.scene.layers(point.material)),
+      has_smooth_(point.process == 0 && !smooth_.is_black()) {}
 
 bool GatheredLight::faces(const Eigen::Vector3d& world) const {
   return world.dot(point_.frame.z) >= kMinCosine && world.dot(point_.frame.face_normal) >= kMinCosine;
+}
+
+Color GatheredLight::tint(const Eigen::Vector3f& of_facets) const {
+  return point_.tint.cwiseProduct(of_facets.cast<double>());
 }
 
 /// Of one draw in the mean over the point's.
@@ -72,7 +69,7 @@ void GatheredLight::draw() {
   const auto samples = static_cast<std::uint32_t>(context_.image.samples);
   const bool shines = !context_.scene.environment().is_black();
   for (std::uint32_t n = 0; n < samples && shines && uses_lights(); ++n) draw_light(n);
-  for (std::uint32_t n = 0; n < samples && uses_brdf() && !smooth_.is_black(); ++n) draw_smooth(n);
+  for (std::uint32_t n = 0; n < samples && uses_brdf() && has_smooth_; ++n) draw_smooth(n);
 }
 
 void GatheredLight::draw_light(std::uint32_t n) {
@@ -82,7 +79,7 @@ void GatheredLight::draw_light(std::uint32_t n) {
   const LightDraw draw{point_.frame.to_local(world), seen_radiance(world), environment.pdf(world)};
   if (draw.radiance.isZero(0) || !(draw.pdf > 0)) return;
   draws_.push_back(draw);
-  if (smooth_.is_black()) return;
+  if (!has_smooth_) return;
   const double pdf = draw.pdf + (uses_brdf() ? smooth_.pdf(view_, draw.local) : 0);
   sum_ += smooth_.value(view_, draw.local).cwiseProduct(draw.radiance) / pdf;
 }
@@ -99,18 +96,21 @@ void GatheredLight::draw_smooth(std::uint32_t n) {
 }
 
 BrdfQuery GatheredLight::query(const LightDraw& draw) const {
-  return {point_.footprint, crossing_.view_below(), crossing_.below(draw.local), material_.roughness};
+  return {point_.footprint, crossing_.view_below(), crossing_.below(draw.local), point_.roughness,
+          point_.glints};
 }
 
 SampleQuery GatheredLight::sample_query(std::size_t n) const {
-  return {{point_.footprint, crossing_.view_below(), material_.roughness}, random_bits(key_, kBrdfKey, n)};
+  return {{point_.footprint, crossing_.view_below(), point_.roughness, point_.glints},
+          random_bits(key_, kBrdfKey, n)};
 }
 
 void GatheredLight::add(const LightDraw& draw, const BrdfValue& value) {
   const BounceFresnel fresnel(material_.specular, crossing_.view_below(), crossing_.below(draw.local));
   const Color reflected = value.single * fresnel.single + value.multiple * fresnel.multiple;
   const double pdf = uses_brdf() ? value.pdf * crossing_.density_scale(draw.local) : 0;
-  sum_ += tint_.cwiseProduct(reflected)
+  sum_ += tint(value.tint)
+              .cwiseProduct(reflected)
               .cwiseProduct(draw.radiance)
               .cwiseProduct(crossing_.value_scale(draw.local)) /
           (draw.pdf + pdf);
@@ -125,7 +125,10 @@ void GatheredLight::add(const BrdfSample& sample, std::size_t n) {
   if (radiance.isZero(0)) return;
   const BounceFresnel fresnel(material_.specular, crossing_.view_below(), below);
   const Color weight = sample.weight_single * fresnel.single + sample.weight_multiple * fresnel.multiple;
-  sum_ += tint_.cwiseProduct(weight).cwiseProduct(radiance).cwiseProduct(crossing_.value_scale(local)) /
+  sum_ += tint(sample.tint)
+              .cwiseProduct(weight)
+              .cwiseProduct(radiance)
+              .cwiseProduct(crossing_.value_scale(local)) /
           density_scale;
 }
 

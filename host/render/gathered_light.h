@@ -56,6 +56,7 @@ class GatheredLight {
   bool uses_brdf() const { return context_.techniques != Techniques::lights; }
   bool faces(const Eigen::Vector3d& world) const;
   double share() const;
+  Color tint(const Eigen::Vector3f& of_facets) const;
   Color seen_radiance(const Eigen::Vector3d& world) const;
   Color drawn_radiance(const Eigen::Vector3d& local, double pdf, std::uint64_t path) const;
   void draw_light(std::uint32_t n);
@@ -68,7 +69,7 @@ class GatheredLight {
   Eigen::Vector3d view_;  // in the point's frame
   CoatCrossing crossing_;
   SmoothMaterial smooth_;
-  Color tint_;  // mean colour of a material's glints
+  bool has_smooth_;  // this point has the light of `smooth_`
   std::vector<LightDraw> draws_;
   Color sum_ = Color::Zero();
 };

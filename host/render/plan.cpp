@@ -17,12 +17,6 @@ namespace {
 
 constexpr int kBatchesInFlight = 2;  // one on the device while the next is traced
 
-void check_gathering(const MaterialDescription& material, const Method& method) {
-  const MethodSettings::Problem problem = method.gathering_problem(*material.settings);
-  if (!problem.message.empty())
-    throw UsageError(fmt::format("material.{}.{}: {}", material.name, problem.key, problem.message));
-}
-
 PlannedEvaluator plan_evaluator(const Job& job, int surface_index, int material_index, bool gathers) {
   const MaterialDescription& material = job.scene.materials[static_cast<std::size_t>(material_index)];
   const Method& method = job.methods.get(material.ndf);
@@ -59,7 +53,6 @@ void plan_structure(const Job& job, PlannedEvaluator* planned) {
 int evaluator_for(const Job& job, int material_index, Plan* plan) {
   const MaterialDescription& material = job.scene.materials[static_cast<std::size_t>(material_index)];
   const Method& method = job.methods.get(material.ndf);
-  if (plan->gathers_light) check_gathering(material, method);
   int surface_index = -1;
   if (method.traits().map) {
     const auto surface =

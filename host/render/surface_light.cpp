@@ -67,7 +67,7 @@ Color surface_light(const Scene& scene, Ray ray, int bounces, std::uint64_t key)
     if (frame.face_normal.dot(to_eye) < kMinCosine) break;
     const std::uint32_t material = scene.material_of(*hit);
     const Vertex vertex{scene, *hit, frame, frame.to_local(to_eye),
-                        SmoothMaterial(scene.layers(material), SmoothMaterial::Lobes::with_smooth_normals)};
+                        SmoothMaterial(scene.layers(material), scene.normals_from_afar(material, *hit))};
     sum += throughput.cwiseProduct(light_of_lamps(vertex) +
                                    light_of_environment(vertex, {random(0), random(1)}));
 

@@ -20,7 +20,7 @@ Eigen::Vector3d CoatCrossing::above(const Eigen::Vector3d& light_below) const {
 }
 
 Color CoatCrossing::value_scale(const Eigen::Vector3d& light) const {
-  return layers_.passed(view_.z(), light.z());
+  return layers_.passed(view_.z(), light.z()).cwiseProduct(layers_.regained(view_below_));
 }
 
 // Snell: n^2 cos' d below = cos d light.

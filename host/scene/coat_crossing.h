@@ -20,8 +20,8 @@ class CoatCrossing {
   /// there.
   Eigen::Vector3d above(const Eigen::Vector3d& light_below) const;
 
-  /// What the BRDF's answer, its cosine within, is multiplied with above: crossings, and the light that goes
-  /// to and fro.
+  /// What the BRDF's answer, its cosine within, is multiplied with above: crossings, the light that goes
+  /// to and fro, and that which bounces on between facets.
   Color value_scale(const Eigen::Vector3d& light) const;
 
   /// What a density of directions below is multiplied with, above: d below / d light.

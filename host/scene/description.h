@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "host/base/glints_description.h"
+#include "host/base/words.h"
 #include "host/image/picture.h"
 
 namespace mica::host {
@@ -43,6 +44,17 @@ struct CoatDescription {
   double roughness = 0.02;  ///< standard deviation of its own slopes an axis; 1e-3..1
 };
 
+/// What becomes of light that bounces more than once between the facets of a lobe.
+enum class MultipleScattering {
+  lost,
+  kept  ///< it leaves as what bounced once, see LobeEnergy
+};
+template <>
+struct Words<MultipleScattering> {
+  static constexpr Word<MultipleScattering> all[] = {{"lost", MultipleScattering::lost},
+                                                     {"kept", MultipleScattering::kept}};
+};
+
 /// `[material.NAME]`
 struct MaterialDescription {
   std::string name;
@@ -53,6 +65,7 @@ struct MaterialDescription {
   double roughness = 0.01;                                   ///< sigma_r on the disk
   Fresnel specular = ColorFresnel{};
   Color diffuse{0, 0, 0};  ///< Lambertian albedo
+  MultipleScattering multiple_scattering = MultipleScattering::lost;
   std::optional<CoatDescription> coat = {};
   std::optional<GlintsDescription> glints = {};  ///< for methods that have no map
 };

@@ -12,6 +12,7 @@ namespace {
 
 constexpr int kStretchSteps = 8;       // steps of a texture, from round to the material's stretch
 constexpr double kLeastCosine = 0.02;  // a plane of the world that is seen at less has no share
+constexpr double kLeastRoughness = 1e-4;
 constexpr double kPeriod =
     1 << 20;  // repeated uv start again here: further out, cells would be lost to rounding
 
@@ -48,12 +49,26 @@ GlintMaterial::GlintMaterial(const MaterialDescription& material)
       stretch_(texture_of(glints_.textures.stretch)),
       color_(texture_of(glints_.textures.color)) {}
 
+Eigen::Vector2d GlintMaterial::alpha_at(const Eigen::Vector2d& uv) const {
+  return (glints_.alpha * factor(alpha_, uv)).cwiseMax(kLeastRoughness);
+}
+
+Color GlintMaterial::tint(const Eigen::Vector2d& uv) const {
+  return color_ ? Color(color_->at(uv).cwiseMax(0).cwiseMin(1)) : Color::Ones();
+}
+
+SmoothNormals GlintMaterial::from_afar(const Eigen::Vector2d& uv) const {
+  Color mean = Color::Zero();
+  for (const Color& color : glints_.colors) mean += color / static_cast<double>(glints_.colors.size());
+  return {SmoothLobe(glints_, alpha_at(uv)),
+          glints_.colors.empty() ? tint(uv) : Color(mean.cwiseProduct(tint(uv)))};
+}
+
 std::vector<GlintPlace> GlintMaterial::places(const CameraRay& ray, const Hit& hit, const TangentFrame& frame,
                                               double sigma_pixels) const {
-  constexpr double least = 1e-4;  // both roughnesses are at least this
   GlintPlace place;
-  const Eigen::Vector2d alpha = (glints_.alpha * factor(alpha_, hit.uv)).cwiseMax(least);
-  place.microroughness = std::max(material_.roughness * factor(microroughness_, hit.uv), least);
+  const Eigen::Vector2d alpha = alpha_at(hit.uv);
+  place.microroughness = std::max(material_.roughness * factor(microroughness_, hit.uv), kLeastRoughness);
   place.point.distribution = glints_.distribution;
   place.point.alpha_x = static_cast<float>(alpha.x()), place.point.alpha_y = static_cast<float>(alpha.y());
   place.point.stretch = static_cast<float>(glints_.stretch);
@@ -117,9 +132,8 @@ Color GlintMaterial::weight(const Hit& hit, const GlintPlace& place, const Tange
                             const LobesSeen& seen) const {
   const Eigen::Vector2d alpha(place.point.alpha_x, place.point.alpha_y);
   const Eigen::Vector3d view = frame.to_local(seen.to_eye), light = frame.to_local(seen.to_light);
-  const double G = glint_masking(glints_, alpha, view, light);
-  const Color reflected = seen.mirrored * (G / (4 * view.z()));
-  return color_ ? reflected.cwiseProduct(color_->at(hit.uv).cwiseMax(0).cwiseMin(1)) : reflected;
+  const double G = glint_masking(glints_.distribution, glints_.masking, alpha, view, light);
+  return seen.mirrored.cwiseProduct(tint(hit.uv)) * (G / (4 * view.z()));
 }
 
 double GlintMaterial::microroughness(const GlintPlace& place, const LobesSeen& seen) const {

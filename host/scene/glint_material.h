@@ -9,6 +9,7 @@
 #include "host/scene/description.h"
 #include "host/scene/lobes.h"
 #include "host/scene/shading.h"
+#include "host/scene/smooth_material.h"
 #include "host/scene/texture.h"
 
 namespace mica::host {
@@ -41,10 +42,17 @@ class GlintMaterial {
   Color weight(const Hit& hit, const GlintPlace& place, const TangentFrame& frame,
                const LobesSeen& seen) const;
 
+  /// Their lobe and colour at a place of the shape, where they are not told from each other.
+  SmoothNormals from_afar(const Eigen::Vector2d& uv) const;
+
+  /// Colour of the reflection by its texture.
+  Color tint(const Eigen::Vector2d& uv) const;
+
   /// The microroughness that a query asks with: the light's extent widens it.
   double microroughness(const GlintPlace& place, const LobesSeen& seen) const;
 
  private:
+  Eigen::Vector2d alpha_at(const Eigen::Vector2d& uv) const;
   void split_by_stretch(const Eigen::Vector2d& uv, std::vector<GlintPlace>* places) const;
   void split_by_plane(const CameraRay& ray, const Hit& hit, const TangentFrame& frame, double sigma_pixels,
                       std::vector<GlintPlace>* places) const;

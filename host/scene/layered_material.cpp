@@ -14,11 +14,14 @@ MaterialDescription in_its_coat(MaterialDescription material) {
 
 }  // namespace
 
-LayeredMaterial::LayeredMaterial(const MaterialDescription& described, double masking_alpha)
+LayeredMaterial::LayeredMaterial(const MaterialDescription& described, const SmoothLobe& lobe)
     : material(in_its_coat(described)),
       coat(material.coat ? std::optional<CoatInterface>(*material.coat) : std::nullopt),
-      masking_alpha(masking_alpha),
-      energy(material, masking_alpha) {}
+      lobe(lobe),
+      masking_alpha(lobe.mean_alpha()),
+      energy(material, masking_alpha) {
+  if (material.multiple_scattering == MultipleScattering::kept) mirrored_energy.emplace(material, lobe);
+}
 
 Color LayeredMaterial::passed(double cos_o, double cos_i) const {
   if (!coat) return Color::Ones();
@@ -28,9 +31,9 @@ Color LayeredMaterial::passed(double cos_o, double cos_i) const {
 }
 
 std::shared_ptr<const LayeredMaterials> make_layers(const std::vector<MaterialDescription>& materials,
-                                                    const std::vector<double>& masking_alpha) {
+                                                    const std::vector<SmoothLobe>& lobes) {
   auto layers = std::make_shared<LayeredMaterials>();
-  for (std::size_t n = 0; n < materials.size(); ++n) layers->emplace_back(materials[n], masking_alpha[n]);
+  for (std::size_t n = 0; n < materials.size(); ++n) layers->emplace_back(materials[n], lobes[n]);
   return layers;
 }
 

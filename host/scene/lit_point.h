@@ -2,8 +2,10 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 
 #include "host/base/query.h"
+#include "host/scene/description.h"
 #include "host/scene/hit.h"
 #include "host/scene/shading.h"
 
@@ -19,6 +21,12 @@ struct LitPoint {
   std::uint32_t sample = 0;    ///< of the lattice
   std::uint32_t subpixel = 0;  ///< in its pixel
   std::uint32_t material = 0;  ///< index into SceneDescription::materials
+  double roughness = 0;        ///< of its queries
+  Color tint = Color::Ones();  ///< of all that a P-NDF mirrors
+  /// Glints without a map may be several processes, with an own footprint and frame, that share the light.
+  /// The first one has the light of the material's other lobes.
+  std::optional<GlintPoint> glints = {};
+  std::uint32_t process = 0;
 };
 
 /// A light seen in a footprint whose material is a patch BRDF, with what its two parts are multiplied with.

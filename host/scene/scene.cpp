@@ -13,7 +13,7 @@
 namespace mica::host {
 namespace {
 
-constexpr double kDefaultMaskingAlpha = 0.1;
+constexpr double kDefaultAlpha = 0.1;
 
 struct IsUsableLight {
   bool operator()(const PointLight& light) const {
@@ -39,10 +39,11 @@ void check_lights(const std::vector<LightDescription>& lights) {
       throw UsageError(fmt::format("light {}: expected finite values and no negative power", i + 1));
 }
 
-void complete(std::vector<double>* masking_alpha, std::size_t materials) {
-  for (const double alpha : *masking_alpha)
-    if (!(alpha >= 0 && std::isfinite(alpha))) throw UsageError(fmt::format("masking alpha of {}", alpha));
-  masking_alpha->resize(materials, kDefaultMaskingAlpha);
+void complete(std::vector<SmoothLobe>* lobes, std::size_t materials) {
+  for (const SmoothLobe& lobe : *lobes)
+    if (!std::isfinite(lobe.mean_alpha()))
+      throw UsageError(fmt::format("lobe of alpha {}", lobe.mean_alpha()));
+  lobes->resize(materials, kDefaultAlpha);
 }
 
 void complete(PixelSettings* pixels, std::size_t materials) {
@@ -71,24 +72,24 @@ struct Scene::Implementation {
 };
 
 Scene::Scene(const SceneDescription& description, int width, int height, PixelSettings pixels,
-             std::vector<double> masking_alpha, LightGathering gathering) {
+             std::vector<SmoothLobe> lobes, LightGathering gathering) {
   if (width < 1 || height < 1) throw UsageError(fmt::format("image of {} x {} pixels", width, height));
   const std::size_t materials = description.materials.size();
-  complete(&masking_alpha, materials);
+  complete(&lobes, materials);
   check_lights(description.lights);
   gathering.patch_materials.resize(materials, false);
   complete(&pixels, materials);
   const PinholeCamera camera(description.camera, width, height);
   implementation_.reset(new Implementation{
-      {std::make_shared<const StaticScene>(description), camera,
-       make_layers(description.materials, masking_alpha), description.lights, std::move(gathering)},
+      {std::make_shared<const StaticScene>(description), camera, make_layers(description.materials, lobes),
+       description.lights, std::move(gathering)},
       std::move(pixels),
       width,
       height});
 }
 
 Scene::Scene(const SceneDescription& description, int width, int height, int subpixels,
-             std::vector<double> masking_alpha, LightGathering gathering)
+             std::vector<SmoothLobe> lobes, LightGathering gathering)
     : Scene(
           description, width, height,
           [&] {
@@ -96,7 +97,7 @@ Scene::Scene(const SceneDescription& description, int width, int height, int sub
             pixels.subpixels = subpixels;
             return pixels;
           }(),
-          std::move(masking_alpha), std::move(gathering)) {}
+          std::move(lobes), std::move(gathering)) {}
 
 Scene::Scene(std::unique_ptr<Implementation> implementation) : implementation_(std::move(implementation)) {}
 
@@ -126,19 +127,24 @@ const LayeredMaterial& Scene::layers(std::uint32_t material) const {
   return (*implementation_->viewer.layers)[material];
 }
 
+SmoothNormals Scene::normals_from_afar(std::uint32_t material, const Hit& hit) const {
+  const std::optional<GlintMaterial>& glints = implementation_->viewer.shared->glints[material];
+  return glints ? glints->from_afar(hit.uv) : SmoothNormals{layers(material).lobe, Color::Ones()};
+}
+
 Scene Scene::with_view(const CameraDescription& camera, const std::vector<LightDescription>& lights,
-                       const std::vector<double>& masking_alpha, PixelSettings pixels) const {
+                       const std::vector<SmoothLobe>& lobes, PixelSettings pixels) const {
   const Implementation& self = *implementation_;
   complete(&pixels, self.viewer.shared->materials.size());
-  std::vector<double> alphas = masking_alpha;
-  complete(&alphas, self.viewer.shared->materials.size());
+  std::vector<SmoothLobe> completed = lobes;
+  complete(&completed, self.viewer.shared->materials.size());
   check_lights(lights);
   const bool same =
-      std::equal(alphas.begin(), alphas.end(), self.viewer.layers->begin(),
-                 [](double alpha, const LayeredMaterial& m) { return alpha == m.masking_alpha; });
+      std::equal(completed.begin(), completed.end(), self.viewer.layers->begin(),
+                 [](const SmoothLobe& lobe, const LayeredMaterial& m) { return lobe == m.lobe; });
   return Scene(std::unique_ptr<Implementation>(
       new Implementation{{self.viewer.shared, PinholeCamera(camera, self.width, self.height),
-                          same ? self.viewer.layers : make_layers(self.viewer.shared->materials, alphas),
+                          same ? self.viewer.layers : make_layers(self.viewer.shared->materials, completed),
                           lights, self.viewer.gathering},
                          std::move(pixels),
                          self.width,

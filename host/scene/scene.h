@@ -14,6 +14,7 @@
 #include "host/scene/layered_material.h"
 #include "host/scene/lit_point.h"
 #include "host/scene/pixel_filter.h"
+#include "host/scene/smooth_material.h"
 
 namespace mica::host {
 
@@ -82,21 +83,21 @@ struct LightGathering {
 class Scene {
  public:
   /// @param width, height image in pixels; @param pixels by default: sums of Gaussians of half a subpixel.
-  /// @param masking_alpha Beckmann roughness of each material's Smith G [Yan14] Eq. 1, >= 0: from the slopes'
-  /// variance of its map and its own roughness; 0.1 for materials that it leaves out. Throws UsageError for
-  /// settings that make no sense, FileError for meshes and backgrounds that cannot be used.
+  /// @param lobes each material's normals from afar: of its map and its own roughness, or of its glints;
+  /// their alpha is that of Smith's G [Yan14] Eq. 1. 0.1 for materials that it leaves out. Throws UsageError
+  /// for settings that make no sense, FileError for meshes and backgrounds that cannot be used.
   Scene(const SceneDescription& description, int width, int height, PixelSettings pixels,
-        std::vector<double> masking_alpha = {}, LightGathering gathering = {});
+        std::vector<SmoothLobe> lobes = {}, LightGathering gathering = {});
   Scene(const SceneDescription& description, int width, int height, int subpixels,
-        std::vector<double> masking_alpha = {}, LightGathering gathering = {});
+        std::vector<SmoothLobe> lobes = {}, LightGathering gathering = {});
   ~Scene();
   Scene(Scene&&) noexcept;
   Scene& operator=(Scene&&) noexcept;
 
   /// The same shapes and background from another camera under other lights; they are shared, not built again.
-  /// @param masking_alpha, pixels as in the constructor: maps may have changed, too.
+  /// @param lobes, pixels as in the constructor: maps may have changed, too.
   Scene with_view(const CameraDescription& camera, const std::vector<LightDescription>& lights,
-                  const std::vector<double>& masking_alpha, PixelSettings pixels) const;
+                  const std::vector<SmoothLobe>& lobes, PixelSettings pixels) const;
 
   /// Traces rows [first_row, first_row + row_count). The result depends on nothing but the scene and the
   /// rows. Throws UsageError for rows outside the image.
@@ -114,6 +115,7 @@ class Scene {
   const std::vector<MaterialDescription>& materials() const;
   std::uint32_t material_of(const Hit& hit) const;  ///< index into materials()
   const LayeredMaterial& layers(std::uint32_t material) const;
+  SmoothNormals normals_from_afar(std::uint32_t material, const Hit& hit) const;
 
  private:
   struct Implementation;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "host/base/constants.h"
 #include "host/microfacet/horizon.h"
@@ -13,15 +14,6 @@
 
 namespace mica::host {
 namespace {
-
-constexpr double kLeastAlpha =
-    1e-3;  // a flat map has this: smoother is a mirror, which no draw towards a light meets
-
-/// [Che18] Eq. 4, centred and isotropic.
-double beckmann_density(const Eigen::Vector3d& half, double alpha) {
-  const double cos2 = half.z() * half.z(), tan2 = (1 - cos2) / cos2;
-  return std::exp(-tan2 / (alpha * alpha)) / (kPi * alpha * alpha * cos2 * cos2);
-}
 
 bool above_horizon(const Eigen::Vector3d& view, const Eigen::Vector3d& light) {
   return view.z() >= kMinCosine && light.z() >= kMinCosine;
@@ -33,23 +25,28 @@ VisibleNormals isotropic_normals(double slope_sigma) {
 
 }  // namespace
 
-SmoothMaterial::SmoothMaterial(const LayeredMaterial& layers, Lobes lobes)
+SmoothMaterial::SmoothMaterial(const LayeredMaterial& layers, std::optional<SmoothNormals> normals)
     : layers_(layers),
-      alpha_(std::max(layers.masking_alpha, kLeastAlpha)),
+      normals_(std::move(normals)),
       diffuse_weight_(layers.material.diffuse.maxCoeff()),
       coat_weight_(layers.coat ? 0.3 : 0),
-      normals_weight_(lobes == Lobes::with_smooth_normals
-                          ? std::max(reflectance(layers.material.specular, 1).maxCoeff(), 0.05)
-                          : 0),
-      coat_normals_(isotropic_normals(layers.coat ? layers.material.coat->roughness : 1)),
-      normals_(isotropic_normals(alpha_ / std::sqrt(2.0))) {}
+      normals_weight_(
+          normals_
+              ? std::max(reflectance(layers.material.specular, 1).cwiseProduct(normals_->tint).maxCoeff(),
+                         0.05)
+              : 0),
+      coat_normals_(isotropic_normals(layers.coat ? layers.material.coat->roughness : 1)) {}
 
 Color SmoothMaterial::value(const Eigen::Vector3d& view, const Eigen::Vector3d& light) const {
   if (!above_horizon(view, light)) return Color::Zero();
   const Illumination incident{light, std::numeric_limits<double>::infinity(), Color::Ones(), 0};
   const LobesSeen seen = see_lobes(layers_, Eigen::Vector3d::UnitZ(), view, incident);
-  if (!(normals_weight_ > 0)) return seen.smooth;
-  return seen.smooth + beckmann_density(seen.half_vector, alpha_) * seen.glint_weight;
+  if (!normals_) return seen.smooth;
+  const double D = normals_->lobe.density(seen.half_vector),
+               G = normals_->lobe.masking_shadowing(seen.to_eye, seen.to_light);
+  const Color mirrored =
+      seen.mirrored.cwiseProduct(layers_.regained(seen.to_eye)).cwiseProduct(normals_->tint);
+  return seen.smooth + mirrored * (D * G / (4 * seen.to_eye.z()));
 }
 
 Eigen::Vector3d SmoothMaterial::sample(const Eigen::Vector3d& view, const Eigen::Vector3d& uniform) const {
@@ -58,7 +55,8 @@ Eigen::Vector3d SmoothMaterial::sample(const Eigen::Vector3d& view, const Eigen:
     const double radius = std::sqrt(uniform.x()), azimuth = 2 * kPi * uniform.y();
     return {radius * std::cos(azimuth), radius * std::sin(azimuth), std::sqrt(1 - uniform.x())};
   }
-  const VisibleNormals& normals = lobe < diffuse_weight_ + coat_weight_ ? coat_normals_ : normals_;
+  const VisibleNormals& normals =
+      lobe < diffuse_weight_ + coat_weight_ || !normals_ ? coat_normals_ : normals_->lobe.visible_normals();
   const Eigen::Vector3d half = normals.sample(view, uniform.head<2>());
   return (2 * half.dot(view) * half - view).normalized();
 }
@@ -68,7 +66,7 @@ double SmoothMaterial::pdf(const Eigen::Vector3d& view, const Eigen::Vector3d& l
   const Eigen::Vector3d half = (view + light).normalized();
   double sum = diffuse_weight_ * light.z() / kPi;
   if (coat_weight_ > 0) sum += coat_weight_ * coat_normals_.pdf(view, half);
-  if (normals_weight_ > 0) sum += normals_weight_ * normals_.pdf(view, half);
+  if (normals_) sum += normals_weight_ * normals_->lobe.visible_normals().pdf(view, half);
   return sum / (diffuse_weight_ + coat_weight_ + normals_weight_);
 }
 

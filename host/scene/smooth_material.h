@@ -1,21 +1,26 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
-#include "host/microfacet/visible_normals.h"
+#include "host/microfacet/smooth_lobe.h"
 #include "host/scene/layered_material.h"
 
 namespace mica::host {
 
+/// What mirrors, where glints are not told from each other.
+struct SmoothNormals {
+  SmoothLobe lobe;
+  Color tint;  ///< mean colour of glints; 1 of maps
+};
+
 /// A material's lobes without glints: what needs no P-NDF (diffuse, a coat's own reflection), and with them,
-/// where light bounces between shapes, a Beckmann lobe with the roughness of the whole map. All directions
-/// are unit and in the tangent frame, views above the horizon.
+/// where light bounces between shapes, a smooth lobe for all of its glints. All directions are unit and in
+/// the tangent frame, views above the horizon.
 class SmoothMaterial {
  public:
-  enum class Lobes { without_normals, with_smooth_normals };
-
-  /// @param layers must outlive this.
-  SmoothMaterial(const LayeredMaterial& layers, Lobes lobes);
+  /// @param normals none: only what needs no P-NDF. @param layers must outlive this.
+  explicit SmoothMaterial(const LayeredMaterial& layers, std::optional<SmoothNormals> normals = {});
 
   /// Whether there is any lobe at all.
   bool is_black() const { return !(diffuse_weight_ + coat_weight_ + normals_weight_ > 0); }
@@ -31,9 +36,9 @@ class SmoothMaterial {
 
  private:
   const LayeredMaterial& layers_;
-  double alpha_;                                          // of the map and of the material's own
+  std::optional<SmoothNormals> normals_;
   double diffuse_weight_, coat_weight_, normals_weight_;  // in proportion to which lobes are drawn from
-  VisibleNormals coat_normals_, normals_;
+  VisibleNormals coat_normals_;
 };
 
 }  // namespace mica::host

@@ -39,6 +39,9 @@ SeenLamp Viewer::see(const LightDescription& light, const SeenPoint& point,
   lamp.incident.irradiance *= lamp.visible;
   lamp.seen = see_lobes((*layers)[point.material], frame.z, point.to_eye, lamp.incident);
   lamp.half_vector = frame.on_disk(lamp.seen.half_vector);
+  const Color regained = (*layers)[point.material].regained(frame.to_local(lamp.seen.to_eye));
+  lamp.seen.mirrored = lamp.seen.mirrored.cwiseProduct(regained);
+  lamp.seen.glint_weight = lamp.seen.glint_weight.cwiseProduct(regained);
   return lamp;
 }
 
@@ -82,6 +85,20 @@ LitBrdf Viewer::lit_brdf(const GlintQuery& query, const SeenPoint& point,
   return lit;
 }
 
+void Viewer::gather(const SeenPoint& point, const std::vector<GlintPlace>& places, const SamplePlace& place,
+                    std::vector<LitPoint>* points) const {
+  const std::optional<GlintMaterial>& glints = shared->glints[point.material];
+  for (const GlintPlace& here : places) {
+    const auto process = static_cast<std::uint32_t>(&here - places.data());
+    LitPoint lit{*point.hit,   point.frame,    point.to_eye,   here.footprint,     place.key,
+                 place.sample, place.subpixel, point.material, here.microroughness};
+    lit.frame.x = here.x, lit.frame.y = here.y;
+    lit.process = process;
+    if (glints) lit.tint = glints->tint(point.hit->uv), lit.glints = here.point;
+    points->push_back(lit);
+  }
+}
+
 void Viewer::ask(const SeenPoint& point, double sigma_pixels, const SamplePlace& place,
                  const std::vector<Eigen::Matrix2d>& turns, RowQueries* queries) const {
   const std::optional<GlintMaterial>& glints = shared->glints[point.material];
@@ -94,9 +111,7 @@ void Viewer::ask(const SeenPoint& point, double sigma_pixels, const SamplePlace&
       {query.query.footprint, point.frame.x, point.frame.y, material.roughness, {}}};
   if (glints) places = glints->places(point.ray, *point.hit, point.frame, sigma_pixels);
   query.query.footprint = places.front().footprint;
-  if (gathering.points)
-    queries->points.push_back({*point.hit, point.frame, point.to_eye, query.query.footprint, place.key,
-                               place.sample, place.subpixel, point.material});
+  if (gathering.points) gather(point, places, place, &queries->points);
 
   for (std::size_t n = 0; n < point.lamps.size(); ++n) {
     const SeenLamp& lamp = point.lamps[n];

@@ -96,6 +96,8 @@ struct Viewer {
  private:
   SeenLamp see(const LightDescription& light, const SeenPoint& point,
                const std::vector<Eigen::Vector2d>& light_samples) const;
+  void gather(const SeenPoint& point, const std::vector<GlintPlace>& places, const SamplePlace& place,
+              std::vector<LitPoint>* points) const;
   LitBrdf lit_brdf(const GlintQuery& query, const SeenPoint& point, const Illumination& incident) const;
 };
 

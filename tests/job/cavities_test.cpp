@@ -17,16 +17,22 @@ TEST(CavitiesInAJob, HaveTheirKeys) {
   const JobFolder folder;
   const MaterialDescription plain = folder.load(with("")).scene.materials[0];
   EXPECT_EQ(plain.ndf, "cavities");
-  EXPECT_EQ(describe(*plain.settings), "compensation diffuse, energy exact, elements 1");
+  EXPECT_EQ(describe(*plain.settings),
+            "compensation diffuse, compensation-width 2, energy exact, elements 1");
   const MaterialDescription other =
-      folder.load(with("compensation = \"specular\"\nenergy = \"table\"\nspacing = 0.5")).scene.materials[0];
-  EXPECT_EQ(describe(*other.settings), "compensation specular, energy table, elements 2");
+      folder
+          .load(
+              with("compensation = \"specular\"\ncompensation_width = 5\nenergy = \"table\"\nspacing = 0.5"))
+          .scene.materials[0];
+  EXPECT_EQ(describe(*other.settings),
+            "compensation specular, compensation-width 5, energy table, elements 2");
 }
 
 TEST(CavitiesInAJob, RefuseWhatTheyDoNotTake) {
   const JobFolder folder;
-  for (const std::string keys : {"spacing = 0.7", "energy = \"guess\"", "compensation = \"none\"",
-                                 "elements = 2", "masking = \"exact\""}) {
+  for (const std::string keys :
+       {"spacing = 0.7", "energy = \"guess\"", "compensation = \"none\"", "elements = 2",
+        "masking = \"exact\"", "compensation_width = 0", "multiple_scattering = \"kept\""}) {
     const std::vector<JobIssue> issues = folder.issues(with(keys));
     ASSERT_EQ(issues.size(), 1u) << keys;
     EXPECT_EQ(issues[0].line, 8) << keys;

@@ -173,6 +173,13 @@ TEST(GatherLight, TechniquesAgreeOnGlintsWithoutAMap) {
       "128");
 }
 
+TEST(GatherLight, TechniquesAgreeOnGlintsOnThreePlanes) {
+  expect_techniques_agree(
+      "ndf = \"grid\"\nalpha = 0.4\nmicroroughness = 0.1\ndensity = 10\nmapping = \"triplanar\"\n"
+      "diffuse = [0.3, 0.2, 0.1]\nspecular = { ior = 1.5 }\n",
+      "128");
+}
+
 TEST(GatherLight, WhiteUnderACoatLosesNothing) {
   const std::string white =
       "surface = \"flat\"\nspecular = { ior = 1 }\ndiffuse = [1, 1, 1]\ncoat = { ior = 1.5, roughness = 0.01 "
@@ -183,7 +190,12 @@ TEST(GatherLight, WhiteUnderACoatLosesNothing) {
 
 /// Mean of 576 pixels that see a rough map from two thirds of the way down, as `ndf` settings say.
 void expect_furnace(const std::string& ndf, double lowest, double highest) {
-  const std::string material = "surface = \"noise\"\nroughness = 0.02\nrepeat = [40, 40]\n" + ndf;
+  const std::string roughness = ndf.find("roughness") == std::string::npos ? "roughness = 0.02\n" : "",
+                    surface =
+                        ndf.find("grid") == std::string::npos && ndf.find("surface") == std::string::npos
+                            ? "surface = \"noise\"\n"
+                            : "";
+  const std::string material = surface + roughness + "repeat = [40, 40]\n" + ndf;
   const std::string job = plane_job(material, "[[light]]\ntype = \"furnace\"\n", 5, "samples = 64");
   for (const Techniques techniques : {Techniques::both, Techniques::brdf}) {
     const Mean found = mean_of(render_job(job, techniques), 0);
@@ -195,6 +207,14 @@ void expect_furnace(const std::string& ndf, double lowest, double highest) {
 
 TEST(GatherLight, CavitiesCannotBeToldFromTheFurnace) {
   expect_furnace("ndf = \"cavities\"\n", 0.99, 1.005);
+}
+
+TEST(GatherLight, KeptLightCannotBeToldFromTheFurnace) {
+  const std::string kept = "multiple_scattering = \"kept\"\n";
+  const std::string glints = "ndf = \"grid\"\nalpha = [0.4, 0.2]\ndensity = 1e9\nmicroroughness = 0.02\n";
+  expect_furnace(glints + kept, 0.99, 1.01);
+  expect_furnace(glints, 0.7, 0.9);
+  expect_furnace("surface = \"flat\"\nroughness = 0.3\n" + kept, 0.99, 1.01);
 }
 
 TEST(GatherLight, IsTheSameForAnyBatchAndThreadCount) {

@@ -116,11 +116,11 @@ TEST(Scene, LambertianPlaneReflectsItsAlbedo) {
 }
 
 /// Calls `check` with each query of a scene of one subpixel a pixel, and with the ray that led to it.
-void for_each_query(const SceneDescription& description, const std::vector<double>& masking_alpha,
+void for_each_query(const SceneDescription& description, const std::vector<SmoothLobe>& lobes,
                     const std::function<void(const GlintQuery&, const CameraRay&)>& check) {
   const int width = 32, height = 18;
   const PinholeCamera camera(description.camera, width, height);
-  const TracedRows rows = Scene(description, width, height, 1, masking_alpha).trace(0, height);
+  const TracedRows rows = Scene(description, width, height, 1, lobes).trace(0, height);
   ASSERT_GT(rows.queries.size(), 50u);
   for (const GlintQuery& query : rows.queries)
     check(query, camera.ray(query.pixel % width + 0.5, query.pixel / width + 0.5));

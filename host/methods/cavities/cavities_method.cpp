@@ -13,6 +13,9 @@ class CavityMethodSettings : public SettingsOf<CavityMethodSettings> {
  public:
   void visit(SettingVisitor& visitor) override {
     visitor.choice("compensation", "Of cavities, where light goes that bounces more than once", compensation);
+    visitor.number(visitor.source() == SettingSource::job ? "compensation_width" : "compensation-width",
+                   "Of the specular compensation of cavities: standard deviation in roughnesses",
+                   compensation_width, {0, 1000, true});
     visitor.choice("energy",
                    "Of cavities, what one bounce loses: of every seed under the footprint, or by a table of "
                    "roughness and angle",
@@ -31,6 +34,7 @@ class CavityMethodSettings : public SettingsOf<CavityMethodSettings> {
   }
 
   Compensation compensation = Compensation::diffuse;
+  double compensation_width = kMirrorWidth;
   LostEnergy energy = LostEnergy::exact;
   double spacing_texels = 1;
   int per_texel = 1;
@@ -67,8 +71,8 @@ class CavitiesMethod : public Method {
                                            const MethodSettings& settings) const override {
     const auto& own = settings_as<CavityMethodSettings>(settings);
     CavitySettings cavities;
-    cavities.compensation = own.compensation, cavities.energy = own.energy,
-    cavities.per_texel = own.per_texel;
+    cavities.compensation = own.compensation, cavities.compensation_width = own.compensation_width;
+    cavities.energy = own.energy, cavities.per_texel = own.per_texel;
     return std::make_unique<CavityBrdf>(*device, *surface, cavities);
   }
 };

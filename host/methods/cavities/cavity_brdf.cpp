@@ -43,7 +43,7 @@ CavityBrdf::CavityBrdf(Device& device, const Surface& surface, const CavitySetti
     throw UsageError("cavities takes bicubic maps with spacing 1 only, where they are not interpolated");
   const Stopwatch watch;
   const MapStructure map = build_map_structure(surface);
-  cavities_ = {map.grid, surface.interpolation(), settings.per_texel};
+  cavities_ = {map.grid, surface.interpolation(), settings.per_texel, settings.compensation_width};
   if (settings.energy == LostEnergy::table) table_.emplace(surface);
   build_seconds_ = watch.seconds();
 
@@ -77,8 +77,9 @@ std::vector<BrdfValue> CavityBrdf::evaluate(const std::vector<BrdfQuery>& querie
   tbb::parallel_for(std::size_t{0}, queries.size(), [&](std::size_t n) {
     const BrdfQuery& query = queries[n];
     values[n].single = singles[n];
-    values[n].multiple = static_cast<float>(
-        albedos[n].lost * compensation(compensation_, query.view, query.light, query.roughness));
+    values[n].multiple =
+        static_cast<float>(albedos[n].lost * compensation(compensation_, query.view, query.light,
+                                                          query.roughness, cavities_.compensation_width));
     values[n].pdf = values[n].single + values[n].multiple;
   });
   return values;

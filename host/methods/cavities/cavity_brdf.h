@@ -17,6 +17,7 @@ namespace mica::host {
 
 struct CavitySettings {
   Compensation compensation = Compensation::diffuse;
+  double compensation_width = kMirrorWidth;  ///< of the specular one, in roughnesses
   LostEnergy energy = LostEnergy::exact;
   int per_texel = 1;  ///< seeds a texel and axis, 1 or 2: [Che19]'s spacing h is 1 or 0.5
   /// Weight, of the largest, at which culling may drop a seed.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "host/methods/cavities/compensation.h"
 #include "host/methods/gaussians/mixture.h"
 #include "host/methods/map/map_query.h"
 
@@ -70,7 +69,7 @@ device_types::mica_cavity_query to_cavity_query(const ViewQuery& query, const Ca
   result.view_y = static_cast<float>(query.view.y());
   result.view_z = static_cast<float>(std::max(query.view.z(), kLeastCosine));
   result.roughness = static_cast<float>(query.roughness);
-  result.lobe_sigma = static_cast<float>(specular_lobe_sigma(query.roughness));
+  result.lobe_sigma = static_cast<float>(specular_lobe_sigma(query.roughness, cavities.compensation_width));
   if (!(query.view.z() > 0)) result.map.cutoff = -1;  // nothing is looked at
   return result;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "host/base/query.h"
+#include "host/methods/cavities/compensation.h"
 #include "host/surface/description.h"
 #include "kernels/types.h"
 
@@ -10,7 +11,8 @@ namespace mica::host {
 struct CavityGrid {
   device_types::mica_map_grid grid{};
   Interpolation interpolation = Interpolation::bilinear;
-  int per_texel = 1;  ///< seeds a texel and axis
+  int per_texel = 1;                         ///< seeds a texel and axis
+  double compensation_width = kMirrorWidth;  ///< of the specular compensation, in roughnesses
 };
 
 /// How the weights of the seeds fall off about a footprint. [Che19] Eq. 17, divided by their sum.

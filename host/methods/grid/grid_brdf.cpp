@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "host/device/launch.h"
+#include "host/methods/grid/grid_settings.h"
 #include "host/microfacet/glint_masking.h"
 #include "host/microfacet/horizon.h"
 
@@ -31,10 +32,10 @@ GlintGrid grid_of(const GlintsDescription& glints) {
 GridBrdf::GridBrdf(Device& device, const GlintsDescription& glints, std::size_t batch_queries)
     : device_(device),
       glints_(glints),
-      point_{grid_of(glints).point()},
+      point_(grid_of(glints).point()),
       batch_queries_(batch_queries),
-      densities_(device, grid_of(glints), std::nullopt, batch_queries) {
-  const std::string options = grid_kernel_options(glints.distribution, GridFeatures{});
+      densities_(device, grid_of(glints), std::nullopt, batch_queries, glint_features(glints)) {
+  const std::string options = grid_kernel_options(glints.distribution, draw_features(glints));
   draw_ = device.kernel("grid/grid_brdf.cl", "grid_draw", options, device.wave_form());
   draw_density_ = device.kernel("grid/grid_brdf.cl", "grid_draw_density", options, device.wave_form());
 }
@@ -57,48 +58,65 @@ std::vector<std::vector<float>> GridBrdf::run(cl::Kernel* kernel, const GridBatc
   return result;
 }
 
-std::vector<float> GridBrdf::draw_densities(const std::vector<Query>& queries) {
+std::vector<float> GridBrdf::draw_densities(const std::vector<Query>& queries,
+                                            const std::vector<GlintPoint>& points) {
   std::vector<float> densities;
   for (std::size_t first = 0; first < queries.size(); first += batch_queries_) {
     const std::size_t count = std::min(batch_queries_, queries.size() - first);
     const std::vector<float> batch =
-        run(&draw_density_, to_grid_batch(queries, first, count, point_), count, 1).front();
+        run(&draw_density_, to_grid_batch(queries, first, count, points), count, 1).front();
     densities.insert(densities.end(), batch.begin(), batch.end());
   }
   return densities;
+}
+
+/// The sum of the colours of the glints that mirror a query, each times what it adds to D.
+Eigen::Vector3f GridBrdf::tint(const PendingDensities& densities, std::size_t query) const {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (std::size_t color = 0; color < glints_.colors.size(); ++color)
+    sum += glints_.colors[color] * static_cast<double>(densities.density_of_color(color, query));
+  return sum.cast<float>();
 }
 
 std::vector<BrdfValue> GridBrdf::evaluate(const std::vector<BrdfQuery>& queries) {
   std::vector<BrdfValue> values(queries.size());
   std::vector<std::size_t> places;
   std::vector<Query> seen;
+  std::vector<GlintPoint> points;
   for (std::size_t n = 0; n < queries.size(); ++n) {
     if (!is_above(queries[n].view) || !is_above(queries[n].light)) continue;
     const Eigen::Vector3d half = (queries[n].view + queries[n].light).normalized();
     places.push_back(n);
     seen.push_back({queries[n].footprint, half.head<2>(), queries[n].roughness});
+    points.push_back(queries[n].glints.value_or(point_));
   }
   if (places.empty()) return values;
-  const std::vector<float> densities = densities_.evaluate(seen), drawn = draw_densities(seen);
+  const std::unique_ptr<PendingDensities> pending = densities_.start_at(seen, points);
+  const std::vector<float> densities = pending->wait(), drawn = draw_densities(seen, points);
   tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t n) {
     const BrdfQuery& query = queries[places[n]];
     const Eigen::Vector3d half = (query.view + query.light).normalized();
-    const double G = glint_masking(glints_, glints_.alpha, query.view, query.light);
+    const double G = glint_masking(glints_.distribution, glints_.masking,
+                                   {points[n].alpha_x, points[n].alpha_y}, query.view, query.light);
     BrdfValue& value = values[places[n]];
     value.single = static_cast<float>(densities[n] * G / (4 * query.view.z()));  // [Kem25] Eq. 1, times i.g
     value.pdf = static_cast<float>(drawn[n] * half.z() / (4 * query.view.dot(half)));  // of h, then of i
+    if (!glints_.colors.empty() && densities[n] > 0) value.tint = tint(*pending, n) / densities[n];
   });
   return values;
 }
 
 std::vector<Eigen::Vector2d> GridBrdf::draw(const std::vector<SampleQuery>& queries) {
   std::vector<Query> seen;
-  for (const SampleQuery& query : queries)
+  std::vector<GlintPoint> points;
+  for (const SampleQuery& query : queries) {
     seen.push_back({query.from.footprint, Eigen::Vector2d::Zero(), query.from.roughness});
+    points.push_back(query.from.glints.value_or(point_));
+  }
   std::vector<Eigen::Vector2d> half_vectors;
   for (std::size_t first = 0; first < queries.size(); first += batch_queries_) {
     const std::size_t count = std::min(batch_queries_, queries.size() - first);
-    GridBatch batch = to_grid_batch(seen, first, count, point_);
+    GridBatch batch = to_grid_batch(seen, first, count, points);
     for (std::size_t n = 0; n < count; ++n) {
       const std::uint64_t key = queries[first + n].key;
       batch.fields[device_types::MICA_GLINT_HALF_S * batch.pitch + n] =
@@ -124,7 +142,7 @@ std::vector<BrdfSample> GridBrdf::sample(const std::vector<SampleQuery>& queries
     const Eigen::Vector3d light = (2 * from.view.dot(half) * half - from.view).normalized();
     if (!is_above(light)) continue;
     places.push_back(n);
-    lit.push_back({from.footprint, from.view, light, from.roughness});
+    lit.push_back({from.footprint, from.view, light, from.roughness, from.glints});
   }
   std::vector<BrdfSample> samples(queries.size());
   const std::vector<BrdfValue> values = evaluate(lit);
@@ -134,6 +152,7 @@ std::vector<BrdfSample> GridBrdf::sample(const std::vector<SampleQuery>& queries
     sample.light = lit[n].light.cast<float>();
     sample.pdf = values[n].pdf;
     sample.weight_single = values[n].single / values[n].pdf;
+    sample.tint = values[n].tint;
   }
   return samples;
 }

@@ -14,7 +14,8 @@ GlintGrid grid_of(const GlintsDescription& glints);
 /// less; the mean over a surface is that of the smooth distribution. Nothing bounces twice.
 ///
 /// Draws follow the glints [Kem25 sec. 3.3.5]; see kernels/grid/grid_brdf.cl. The roughness of queries is the
-/// microroughness. Colours of glints are left out.
+/// microroughness. Glints that are drawn have no colours; what answers say of a direction has:
+/// BrdfValue::tint.
 class GridBrdf : public PatchBrdf {
  public:
   /// @param device must outlive it. Throws UsageError for glints with a problem.
@@ -38,12 +39,13 @@ class GridBrdf : public PatchBrdf {
   /// Rows of one of the kernels of grid_brdf.cl.
   std::vector<std::vector<float>> run(cl::Kernel* kernel, const GridBatch& batch, std::size_t count,
                                       std::size_t rows);
+  Eigen::Vector3f tint(const PendingDensities& densities, std::size_t query) const;
   std::vector<Eigen::Vector2d> draw(const std::vector<SampleQuery>& queries);
-  std::vector<float> draw_densities(const std::vector<Query>& queries);
+  std::vector<float> draw_densities(const std::vector<Query>& queries, const std::vector<GlintPoint>& points);
 
   Device& device_;
   GlintsDescription glints_;
-  std::vector<GlintPoint> point_;  // one, for all queries
+  GlintPoint point_;  // of queries that bring none
   std::size_t batch_queries_;
   GridEvaluator densities_;
   cl::Kernel draw_, draw_density_;

@@ -40,7 +40,7 @@ class GridMethod : public Method {
     StructureSize size;
     size.kernel = "grid/grid.cl " + grid_kernel_options(glints.distribution, glint_features(glints));
     if (asked.brdf)
-      size.kernel += ", grid/grid_brdf.cl " + grid_kernel_options(glints.distribution, GridFeatures{});
+      size.kernel += ", grid/grid_brdf.cl " + grid_kernel_options(glints.distribution, draw_features(glints));
     return size;
   }
 
@@ -49,19 +49,6 @@ class GridMethod : public Method {
     const StructureAsked asked;
     return !gathers && structure(asked, a).kernel == structure(asked, b).kernel &&
            glints_of(a).colors == glints_of(b).colors;
-  }
-
-  /// The BRDF of glints, which light from all around needs, knows one process and no place on the shape.
-  MethodSettings::Problem gathering_problem(const MethodSettings& settings) const override {
-    const GlintsDescription& glints = glints_of(settings);
-    if (glints.mapping == GlintsDescription::Mapping::triplanar)
-      return {"mapping", "found \"triplanar\" in light from all around; expected \"uv\" there"};
-    const GlintTextures& t = glints.textures;
-    for (const std::string* file : {&t.density, &t.alpha, &t.microroughness, &t.stretch, &t.color})
-      if (!file->empty())
-        return {"textures",
-                fmt::format("found \"{}\" in light from all around; expected no textures there", *file)};
-    return {};
   }
 
   std::unique_ptr<Evaluator> make_own(Device* device, const Surface*,
@@ -100,6 +87,12 @@ GridFeatures glint_features(const GlintsDescription& glints) {
   features.colors = std::max<int>(1, static_cast<int>(glints.colors.size()));
   features.roulette = glints.mapping == GlintsDescription::Mapping::triplanar ||
                       !glints.textures.density.empty() || !glints.textures.stretch.empty();
+  return features;
+}
+
+GridFeatures draw_features(const GlintsDescription& glints) {
+  GridFeatures features = glint_features(glints);
+  features.colors = 1;
   return features;
 }
 

@@ -20,5 +20,7 @@ class GridSettings : public SettingsOf<GridSettings> {
 
 /// What the kernel has to be able to do for these glints.
 GridFeatures glint_features(const GlintsDescription& glints);
+/// The same of the kernels that draw, which see no colours.
+GridFeatures draw_features(const GlintsDescription& glints);
 
 }  // namespace mica::host

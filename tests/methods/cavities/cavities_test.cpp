@@ -164,7 +164,8 @@ TEST(Cavities, CompensationIsWhole) {
       const Eigen::Vector3d view = direction(polar, 20);
       // Lights on a grid of the disk (i_x, i_y), whose area is i_z di.
       for (const Compensation kind : {Compensation::diffuse, Compensation::specular}) {
-        const double reach = kind == Compensation::diffuse ? 2 : 12 * roughness;
+        const double width = polar > 60 ? 4 : 2;  // of the specular lobe, in roughnesses
+        const double reach = kind == Compensation::diffuse ? 2 : std::min(6 * width * roughness, 2.0);
         constexpr int steps = 240;
         double sum = 0;
         for (int a = 0; a < steps; ++a) {
@@ -174,7 +175,7 @@ TEST(Cavities, CompensationIsWhole) {
             const double squared_cosine = 1 - light.squaredNorm();
             if (squared_cosine <= 0) continue;
             const double cosine = std::sqrt(squared_cosine);
-            sum += compensation(kind, view, {light.x(), light.y(), cosine}, roughness) / cosine;
+            sum += compensation(kind, view, {light.x(), light.y(), cosine}, roughness, width) / cosine;
           }
         }
         EXPECT_NEAR(sum * std::pow(2 * reach / steps, 2), 1, 2e-3) << static_cast<int>(kind) << ", " << polar;
@@ -190,6 +191,14 @@ TEST(Cavities, CompensationIsWhole) {
   EXPECT_GT(value.multiple, 0);
   EXPECT_NEAR(value.multiple, lost * compensation(Compensation::specular, view.view, light, 0.05), 1e-6);
   EXPECT_EQ(value.pdf, value.single + value.multiple);
+
+  CavitySettings wide;
+  wide.compensation = Compensation::specular, wide.compensation_width = 6;
+  const BrdfValue wider =
+      CavityBrdf(device(), surface, wide).evaluate({{view.footprint, view.view, light, 0.05}})[0];
+  EXPECT_NEAR(wider.multiple, lost * compensation(Compensation::specular, view.view, light, 0.05, 6), 1e-6);
+  EXPECT_LT(wider.multiple,
+            0.3f * value.multiple);  // near its peak, which falls with the square of the width
 }
 
 TEST(Cavities, DoNotDependOnTheBatch) {
