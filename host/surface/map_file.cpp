@@ -283,17 +283,21 @@ std::vector<Eigen::Vector2d> decode_normals(const MapFile& file, const MapPixels
     report.warnings.push_back("green = \"down\" has no effect on a height map");
   }
   report_quantisation(file, encoding, pixels, report);
-  if (step != nullptr) *step = slope_step(file, encoding, pixels);
   if (encoding == Encoding::height && file.precision == Precision::restore)
     throw UsageError(file.path + ": precision \"restore\" is for normals; found heights");
-  return Decoder(file, encoding, pixels, report).decode();
+  std::vector<Eigen::Vector2d> normals = Decoder(file, encoding, pixels, report).decode();
+  if (step != nullptr) {
+    *step = slope_step(file, encoding, pixels);
+    const bool is_signed = encoding == Encoding::signed_float || encoding == Encoding::slope;
+    if (*step > 0 && is_signed && pixels.type == MapPixels::Type::floating) *step = half_float_step(normals);
+  }
+  return normals;
 }
 
 Surface load_map(const MapFile& file, Interpolation interpolation, SurfaceReport& report) {
   const MapPixels pixels = read_map_pixels(file.path, report, file.choice);
   double step = 0;
   std::vector<Eigen::Vector2d> normals = decode_normals(file, pixels, report, &step);
-  if (pixels.type == MapPixels::Type::floating && step > 0) step = half_float_step(normals);
   const bool restores = file.precision == Precision::restore && step > 0;
   if (restores) {
     restore_normals(pixels.width, pixels.height, step, &normals);

@@ -335,6 +335,15 @@ TEST_F(MapFileTest, HalfFloatsSayHowFineTheyAre) {
   EXPECT_TRUE(mentions(report.notes, "16-bit float pixels hold slopes in steps of 0.00049"));
 }
 
+/// Signed ones are the finer the flatter a map is, those of 0..1 are not.
+TEST_F(MapFileTest, HalfFloatsHaveTheStepOfTheirNormals) {
+  const auto half = [](OIIO::ImageSpec& spec) { spec.set_format(OIIO::TypeDesc::HALF); };
+  const auto flat = write<float>("a.exr", 2, 1, 3, {0.1f, 0.1f, 0.99f, -0.1f, -0.1f, 0.99f}, half);
+  EXPECT_EQ(load(map_file(flat)).step(), std::exp2(-14));
+  const auto raised = write<float>("b.exr", 2, 1, 3, {0.55f, 0.55f, 0.99f, 0.45f, 0.45f, 0.99f}, half);
+  EXPECT_EQ(load(map_file(raised)).step(), std::exp2(-10));
+}
+
 TEST_F(MapFileTest, EightBitHeightsWarnWithTheirOwnStep) {
   SurfaceReport report;
   MapFile file = map_file(write<std::uint8_t>("a.png", 2, 2, 1, {1, 2, 3, 4}), Encoding::height);
