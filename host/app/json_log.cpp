@@ -57,11 +57,11 @@ JsonLog::~JsonLog() {
   close(descriptor_);
 }
 
-void JsonLog::write(const std::string& event, nlohmann::json details) {
+void JsonLog::write(const std::string& event, const nlohmann::json& details) {
   if (descriptor_ < 0) return;
   nlohmann::ordered_json line = {
       {"time", utc_now()}, {"event", event}, {"host", host_name()}, {"process", getpid()}};
-  for (auto& [key, value] : details.items()) line[key] = std::move(value);
+  for (const auto& [key, value] : details.items()) line[key] = value;
   const std::string text = line.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
   const std::lock_guard<std::mutex> lock(mutex_);
   static_cast<void>(!::write(descriptor_, text.data(), text.size()));  // one call: lines stay whole

@@ -22,7 +22,7 @@ class JsonLog {
   JsonLog& operator=(const JsonLog&) = delete;
 
   /// Adds time, host and process to `details`. A log that is full does not end the work that it tells of.
-  void write(const std::string& event, nlohmann::json details = nlohmann::json::object());
+  void write(const std::string& event, const nlohmann::json& details = nlohmann::json::object());
 
  private:
   void say_alive();
