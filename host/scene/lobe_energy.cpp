@@ -35,6 +35,10 @@ std::vector<Eigen::Vector3d> blurred_normals(const MaterialDescription& material
   return normals;
 }
 
+std::size_t place_of(int row, int column) {
+  return static_cast<std::size_t>(row) * kAzimuths + static_cast<std::size_t>(column);
+}
+
 }  // namespace
 
 LobeEnergy::LobeEnergy(const MaterialDescription& material, const SmoothLobe& lobe)
@@ -55,8 +59,7 @@ LobeEnergy::LobeEnergy(const MaterialDescription& material, const SmoothLobe& lo
                                          : smith_masking_shadowing(view.z(), light.z(), masking_alpha);
         sum += G * facing / normal.z();
       }
-      table_[static_cast<std::size_t>(row * kAzimuths + column)] =
-          std::max(sum / (cosine * kNormals), kLeastAlbedo);
+      table_[place_of(row, column)] = std::max(sum / (cosine * kNormals), kLeastAlbedo);
     }
 }
 
@@ -65,9 +68,7 @@ double LobeEnergy::albedo(const Eigen::Vector3d& view) const {
                turn = std::atan2(view.y(), view.x()) / kPi, column = kAzimuths * (turn - std::floor(turn));
   const int i = std::min(static_cast<int>(row), kCosines - 1), j = static_cast<int>(column);
   const double f = row - i, g = column - j;
-  const auto at = [&](int down, int right) {
-    return table_[static_cast<std::size_t>((i + down) * kAzimuths + (j + right) % kAzimuths)];
-  };
+  const auto at = [&](int down, int right) { return table_[place_of(i + down, (j + right) % kAzimuths)]; };
   return (1 - f) * ((1 - g) * at(0, 0) + g * at(0, 1)) + f * ((1 - g) * at(1, 0) + g * at(1, 1));
 }
 
