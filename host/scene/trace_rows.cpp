@@ -14,8 +14,9 @@
 namespace mica::host {
 namespace {
 
-/// Of the share of a lamp that is seen, between a fit and its rays: these are off by 0.04 where half of it is
-/// seen, and by 0.3 on both sides of a shadow's edge.
+/// Of the share of a lamp that is seen, between a fit and its rays, root mean square: 36 shadow rays are off
+/// by 0.06 where half of it is seen; an edge of a shadow less than 0.4 pixels from the centre is by 0.14 to
+/// 0.23.
 constexpr double kMostPenumbraResidual = 0.12;
 
 /// Sums of one pixel's AOVs over the samples that hit a shape.
