@@ -86,8 +86,9 @@ FrameSettings read_frames(TableReader& table) {
   return frames;
 }
 
+/// The job's tolerance is for those who choose by it, unless the material has its own.
 void give_tolerance(const Job& job, MaterialDescription* material) {
-  if (!job.methods.get(material->ndf).traits().keeps_tolerance) return;
+  if (!job.methods.get(material->ndf).traits().chooses || material->settings->tolerance) return;
   std::unique_ptr<MethodSettings> settings = material->settings->clone();
   settings->tolerance = job.accuracy.tolerance;
   material->settings = std::move(settings);

@@ -94,6 +94,12 @@ std::shared_ptr<const MethodSettings> read_settings_of(TableReader& table, const
     for (const auto& other : methods.all())
       if (has_map_and_densities(*other)) unused.emplace_back(other->settings())->visit(reader);
   reader.read_files();
+  const MethodTraits traits = method.traits();
+  if (traits.keeps_tolerance || has_map_and_densities(method)) {
+    double tolerance = 0;
+    table.read("tolerance", tolerance, closed(traits.chooses ? 5e-4 : 1e-4, 0.5));
+    if (tolerance > 0 && traits.keeps_tolerance) settings->tolerance = tolerance;
+  }
   if (const MethodSettings::Problem problem = settings->problem(); !problem.message.empty())
     table.report(problem.key, problem.message);
   return settings;

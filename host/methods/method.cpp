@@ -25,7 +25,7 @@ void Method::check(const MethodSettings& settings) const {
 }
 
 bool Method::share(const MethodSettings& a, const MethodSettings& b, bool) const {
-  return describe(a) == describe(b);
+  return describe(a) == describe(b) && a.tolerance == b.tolerance;
 }
 
 std::unique_ptr<Evaluator> Method::make(Device* device, const Surface* surface,

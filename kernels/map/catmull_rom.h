@@ -80,8 +80,8 @@ static inline wave_float patch_bound(global const triangle_query* query, global 
 
 // As its namesake in texel_quads.h.
 static inline void take_leaf(global const triangle_query* query, global const int* normals, int at, int i,
-                             int j, int room_i, int room_j, private wave_list* list, private integrator* out,
-                             WAVE_SHARED int* scratch) {
+                             int j, int room_i, int room_j, private waiting_quads* waiting,
+                             private integrator* out, WAVE_SHARED int* scratch) {
   global const mica_map_query* place = PLACE(query);
 #if MICA_FIRST_ORDER
   const float scale = 1.0f / MICA_NORMAL_ONE;
@@ -107,7 +107,7 @@ static inline void take_leaf(global const triangle_query* query, global const in
 #endif
     const wave_float box = quads_bound(place, &q);
     const uint bits = wave_ballot(wave_mask(box <= place->cutoff), scratch);
-    if (bits) take_quads(place, &q, bits, list, out, scratch);
+    if (bits) take_quads(place, &q, bits, waiting, out, scratch);
   }
 }
 

@@ -14,8 +14,8 @@ static inline wave_float distance_from(int value, wave_int a, wave_int b, wave_i
 // The sixteen quads of a leaf, whose lower left texel is stored at `at` and lies (i, j) texels from the mean;
 // `room_i`, `room_j` are the texels that the map has left there.
 static inline void take_leaf(global const triangle_query* query, global const int* normals, int at, int i,
-                             int j, int room_i, int room_j, private wave_list* list, private integrator* out,
-                             WAVE_SHARED int* scratch) {
+                             int j, int room_i, int room_j, private waiting_quads* waiting,
+                             private integrator* out, WAVE_SHARED int* scratch) {
   quad_corners c;
   load_corners(normals, at, &c);
   global const mica_map_query* place = PLACE(query);
@@ -45,7 +45,7 @@ static inline void take_leaf(global const triangle_query* query, global const in
   const uint bits = wave_ballot(wave_mask(bound <= place->cutoff) & inside_map, scratch);
   if (bits == 0) return;
 #endif
-  take_quads(place, &q, bits, list, out, scratch);
+  take_quads(place, &q, bits, waiting, out, scratch);
 }
 
 #endif  // MICA_TEXEL_QUADS_H

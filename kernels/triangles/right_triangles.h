@@ -8,22 +8,8 @@
 #ifndef MICA_RIGHT_TRIANGLES_H
 #define MICA_RIGHT_TRIANGLES_H
 
-#include "wave/gaussian.h"
-#include "wave/quadrature.h"
+#include "triangles/precision.h"
 #include "wave/wave_list.h"
-
-// 1: integrals return the floating-point operations that they take instead (a fused multiply-add is two); the
-// benchmark's share of the device's peak is made of it.
-#ifndef MICA_COUNT_FLOPS
-#define MICA_COUNT_FLOPS 0
-#endif
-#if MICA_COUNT_FLOPS
-#define COUNTED(flops, value) ((wave_float)((float)(flops)) + 0.0f * (value))
-#else
-#define COUNTED(flops, value) (value)
-#endif
-
-#define MINUS_HALF_LOG2_E (-(EXP2_SCALE * EXP2_SCALE))
 
 // Lane sums with their rounding errors: a large footprint adds millions of terms.
 typedef struct {
@@ -37,7 +23,6 @@ static inline void accumulate(private accumulator* a, wave_float x) {
   a->sum = sum;
 }
 
-#define SHORT_RANGE 3.7f  // standard deviations: 4 or 6 points suffice
 #define RIGHT_FIELDS 7
 #define RIGHT_RECORDS (RIGHT_FIELDS * WAVE_LIST)
 typedef struct {
@@ -45,8 +30,8 @@ typedef struct {
   wave_list short_ones, long_ones;  // right triangles, by their range
 } integrator;
 
-// y = y_middle + y_slope * node in the scale of gaussian_exp2, the hypotenuse in that of
-// gaussian_cdf_centred. Lanes beyond the cutoff have a y_slope of zero.
+// y = y_middle + y_slope * node in the scale of triangle_exp2, the hypotenuse in that of
+// triangle_cdf. Lanes beyond the cutoff have a y_slope of zero.
 typedef struct {
   wave_float y_middle, y_slope, q_plane, limit_middle, limit_slope, fixed, weight;
 } right_triangles;
@@ -67,8 +52,8 @@ static inline void integrate_first(private wave_list* list, private accumulator*
   wave_float sum = 0.0f;
   for (int k = first; k < first + points; ++k) {
     const wave_float y = fma(y_slope, legendre_nodes[k], y_middle);
-    const wave_float gaussian = gaussian_exp2(fma(-y, y, q_plane));
-    const wave_float inside = gaussian_cdf_centred(fma(limit_slope, legendre_nodes[k], limit_middle)) - fixed;
+    const wave_float gaussian = triangle_exp2(fma(-y, y, q_plane));
+    const wave_float inside = triangle_cdf(fma(limit_slope, legendre_nodes[k], limit_middle)) - fixed;
     sum = fma(legendre_weights[k] * inside, gaussian, sum);
   }
   accumulate(total, wave_select(zero, COUNTED(48 * points, fabs(sum) * weight), valid));
@@ -98,7 +83,8 @@ static inline right_triangles make_right_triangles(wave_float t, wave_float t_le
   // Where the inner interval lies off the axis, less of the outer one is within the cutoff.
   const wave_float inner_end = inner + inner_leg;
   const wave_float off = max(max(min(inner, inner_end), -max(inner, inner_end)), 0.0f);
-  const wave_float reach_squared = max(cutoff - q_plane - off * off, 1e-20f);
+  const wave_float below = cutoff - q_plane - off * off, beyond = 1e-20f;
+  const wave_float reach_squared = wave_select(beyond, below + BEYOND_CUTOFF, wave_mask(below > beyond));
   const wave_float reach = reach_squared * wave_rsqrt(reach_squared);
   const wave_float y0 = min(max(outer, -reach), reach), y1 = min(max(outer + outer_leg, -reach), reach);
   const wave_float middle = 0.5f * (y0 + y1), half_range = 0.5f * fabs(y1 - y0);
@@ -108,9 +94,9 @@ static inline right_triangles make_right_triangles(wave_float t, wave_float t_le
   right_triangles result;
   result.y_middle = EXP2_SCALE * middle, result.y_slope = EXP2_SCALE * half_range;
   result.q_plane = MINUS_HALF_LOG2_E * q_plane;
-  result.limit_middle = CDF_SCALE * fma(slope, middle - outer, inner_end);
-  result.limit_slope = CDF_SCALE * slope * half_range;
-  result.fixed = gaussian_cdf_centred(CDF_SCALE * inner);
+  result.limit_middle = TRIANGLE_CDF_SCALE * fma(slope, middle - outer, inner_end);
+  result.limit_slope = TRIANGLE_CDF_SCALE * slope * half_range;
+  result.fixed = triangle_cdf(TRIANGLE_CDF_SCALE * inner);
   result.weight = weight * half_range;
   return result;
 }

@@ -5,6 +5,7 @@
 // and the integrand exp(-Q/2) a 2D Gaussian. With R the 4-vector whose squared length is Q, R(u) = R0 + M (u
 // - corner).
 //   - Triangles that are small beside the Gaussian: Gauss points of degree 2, 4 or 6.
+//   - Quads that are thin beside it, one way: strips.h.
 //   - All others: M is brought to triangular form (Gram-Schmidt), which whitens the Gaussian without squaring
 //   its
 //     condition number. The altitude on the longest edge cuts the whitened triangle into two right triangles
@@ -13,34 +14,8 @@
 #define MICA_TRIANGLE_INTEGRAL_H
 
 #include "triangles/right_triangles.h"
-#include "wave/gaussian.h"
-#include "wave/quadrature.h"
+#include "triangles/strips.h"
 #include "wave/wave.h"
-
-// R, or a difference of two: position in standard deviations of the footprint (1, 2: its axes), normal in
-// standard deviations of roughness (s, t).
-typedef struct {
-  wave_float p1, p2, s, t;
-} residual;
-
-// R(corner + x e1 + y e2) = r0 + x m1 + y m2, for the legs e1, e2 of a right triangle.
-typedef struct {
-  residual r0, m1, m2;
-} affine_residual;
-
-static inline wave_float dot4(residual a, residual b) {
-  return fma(a.t, b.t, fma(a.s, b.s, fma(a.p2, b.p2, a.p1 * b.p1)));
-}
-
-// a - k b
-static inline residual subtract(residual a, wave_float k, residual b) {
-  residual r;
-  r.p1 = fma(-k, b.p1, a.p1);
-  r.p2 = fma(-k, b.p2, a.p2);
-  r.s = fma(-k, b.s, a.s);
-  r.t = fma(-k, b.t, a.t);
-  return r;
-}
 
 // Squared length of the longest whitened edge.
 static inline wave_float longest_edge_squared(affine_residual r) {
@@ -60,7 +35,7 @@ static inline wave_float integrate_by_points(affine_residual r, int first, int c
     const float x = triangle_points[3 * k], y = triangle_points[3 * k + 1];
     const wave_float linear_x = fma(a11, x, fma(a12, y, b1)), linear_y = fma(a22, y, b2);
     const wave_float q = fma(linear_x, x, fma(linear_y, y, q0));
-    sum = fma(gaussian_exp2(min(max(q, -126.0f), 0.0f)), triangle_points[3 * k + 2], sum);
+    sum = fma(triangle_exp2(min(max(q, -126.0f), 0.0f)), triangle_points[3 * k + 2], sum);
   }
   return COUNTED(48 + 25 * count, sum);
 }
@@ -123,13 +98,24 @@ static inline void integrate_triangle_pairs(affine_residual a, affine_residual b
   const wave_float zero = 0.0f;
   const wave_float longest = max(longest_edge_squared(a), longest_edge_squared(b));
   const float longest2 = wave_max(wave_select(zero, longest, valid), scratch);
-  if (longest2 <= 4.0f) {
-    const int first = longest2 <= 0.06f ? 0 : longest2 <= 1.4f ? 3 : 9;
-    const int count = longest2 <= 0.06f ? 3 : longest2 <= 1.4f ? 6 : 12;
+  if (longest2 <= TWELVE_POINTS) {
+    const int first = longest2 <= THREE_POINTS ? 0 : longest2 <= SIX_POINTS ? 3 : 9;
+    const int count = longest2 <= THREE_POINTS ? 3 : longest2 <= SIX_POINTS ? 6 : 12;
     const wave_float sum = integrate_by_points(a, first, count) + integrate_by_points(b, first, count);
     accumulate(&out->total, wave_select(zero, sum, valid));
     return;
   }
+#if MICA_PRECISION > 0
+  const wave_float along_x = max(dot4(a.m1, a.m1), dot4(b.m1, b.m1));
+  const wave_float along_y = max(dot4(a.m2, a.m2), dot4(b.m2, b.m2));
+  const float thickest2 = wave_max(wave_select(zero, min(along_x, along_y), valid), scratch);
+  if (thickest2 <= THIN * THIN) {
+    const wave_int swap = wave_mask(along_y < along_x);
+    const wave_float sum = integrate_strips(swap_legs(a, swap), swap_legs(b, swap), sqrt(thickest2));
+    accumulate(&out->total, wave_select(zero, sum, valid));
+    return;
+  }
+#endif
   // Two whitenings of about 120 and four pairs of right triangles of about 40.
   if (MICA_COUNT_FLOPS) accumulate(&out->total, wave_select(zero, COUNTED(400, longest), valid));
   whitened_triangle u = whiten(a), v = whiten(b);

@@ -80,35 +80,88 @@ static inline void integrate_quads(global const mica_map_query* query, private c
   integrate_triangle_pairs(lower, upper, valid, query->cutoff, out, scratch);
 }
 
-// Quads wait in a list until there are sixteen of them.
+// Quads wait until there are sixteen of them: those that are cheap to integrate, and the others.
 #define QUAD_FIELDS 10
+typedef struct {
+  wave_list thin, other;
+} waiting_quads;
+
+static inline void load_first_quads(wave_list list, private quads* q) {
+  q->x = wave_list_field(list, 0), q->y = wave_list_field(list, 1);
+  q->s00 = wave_list_field(list, 2), q->s10 = wave_list_field(list, 3);
+  q->s01 = wave_list_field(list, 4), q->s11 = wave_list_field(list, 5);
+  q->t00 = wave_list_field(list, 6), q->t10 = wave_list_field(list, 7);
+  q->t01 = wave_list_field(list, 8), q->t11 = wave_list_field(list, 9);
+}
+
 static inline void integrate_first_quads(global const mica_map_query* query, private wave_list* list,
                                          private integrator* out, WAVE_SHARED int* scratch) {
   quads q;
-  q.x = wave_list_field(*list, 0), q.y = wave_list_field(*list, 1);
-  q.s00 = wave_list_field(*list, 2), q.s10 = wave_list_field(*list, 3);
-  q.s01 = wave_list_field(*list, 4), q.s11 = wave_list_field(*list, 5);
-  q.t00 = wave_list_field(*list, 6), q.t10 = wave_list_field(*list, 7);
-  q.t01 = wave_list_field(*list, 8), q.t11 = wave_list_field(*list, 9);
+  load_first_quads(*list, &q);
   const wave_int valid = wave_mask(WAVE_LANE < list->count);
   wave_list_drop(list, QUAD_FIELDS);
   integrate_quads(query, &q, valid, out, scratch);
 }
 
-// Integrates the quads in `bits`: at once when all sixteen are, later in company when not.
-static inline void take_quads(global const mica_map_query* query, private const quads* q, uint bits,
-                              private wave_list* list, private integrator* out, WAVE_SHARED int* scratch) {
-  if (bits == 0xffffu) {
-    integrate_quads(query, q, wave_mask(WAVE_LANE >= 0), out, scratch);
-    return;
-  }
+static inline void append_quads(private const quads* q, uint bits, private wave_list* list) {
   wave_list_pack(*list, 0, bits, q->x), wave_list_pack(*list, 1, bits, q->y);
   wave_list_pack(*list, 2, bits, q->s00), wave_list_pack(*list, 3, bits, q->s10);
   wave_list_pack(*list, 4, bits, q->s01), wave_list_pack(*list, 5, bits, q->s11);
   wave_list_pack(*list, 6, bits, q->t00), wave_list_pack(*list, 7, bits, q->t10);
   wave_list_pack(*list, 8, bits, q->t01), wave_list_pack(*list, 9, bits, q->t11);
   wave_list_count(list, bits);
+}
+
+// Integrates the quads in `bits`: at once when all sixteen are, later in company when not.
+static inline void take_quads_alike(global const mica_map_query* query, private const quads* q, uint bits,
+                                    private wave_list* list, private integrator* out,
+                                    WAVE_SHARED int* scratch) {
+  if (bits == 0) return;
+  if (bits == 0xffffu) {
+    integrate_quads(query, q, wave_mask(WAVE_LANE >= 0), out, scratch);
+    return;
+  }
+  append_quads(q, bits, list);
   if (list->count >= WAVE_LANES) integrate_first_quads(query, list, out, scratch);
+}
+
+// Bits of the quads that are thin: strips take them when no other quad is in the wave. Where nearly all of
+// the work is arithmetic, a second list that is never full costs more than it gains.
+static inline uint thin_quads(global const mica_map_query* query, private const quads* q,
+                              WAVE_SHARED int* scratch) {
+#if MICA_PRECISION == 0
+  return 0;
+#else
+#define EDGE(a, b) fma(q->s##a - q->s##b, q->s##a - q->s##b, (q->t##a - q->t##b) * (q->t##a - q->t##b))
+  const float w1x = QUAD_SIZE * query->whiten_1x, w1y = QUAD_SIZE * query->whiten_1y;
+  const float w2x = QUAD_SIZE * query->whiten_2x, w2y = QUAD_SIZE * query->whiten_2y;
+  const wave_float along_x = fma(w1x, w1x, w2x * w2x) + max(EDGE(00, 10), EDGE(01, 11));
+  const wave_float along_y = fma(w1y, w1y, w2y * w2y) + max(EDGE(00, 01), EDGE(10, 11));
+#undef EDGE
+  return wave_ballot(wave_mask(min(along_x, along_y) <= THIN * THIN), scratch);
+#endif
+}
+
+static inline void take_quads(global const mica_map_query* query, private const quads* q, uint bits,
+                              private waiting_quads* waiting, private integrator* out,
+                              WAVE_SHARED int* scratch) {
+  const uint thin = bits & thin_quads(query, q, scratch);
+  take_quads_alike(query, q, thin, &waiting->thin, out, scratch);
+  take_quads_alike(query, q, bits & ~thin, &waiting->other, out, scratch);
+}
+
+// What still waits: together, where that is one wave.
+static inline void integrate_waiting(global const mica_map_query* query, private waiting_quads* waiting,
+                                     private integrator* out, WAVE_SHARED int* scratch) {
+  const int thin = waiting->thin.count;
+  if (thin && waiting->other.count && thin + waiting->other.count <= WAVE_LANES) {
+    quads q;
+    load_first_quads(waiting->thin, &q);
+    append_quads(&q, (1u << thin) - 1u, &waiting->other);
+    waiting->thin.count = 0;
+  }
+  if (waiting->thin.count) integrate_first_quads(query, &waiting->thin, out, scratch);
+  if (waiting->other.count) integrate_first_quads(query, &waiting->other, out, scratch);
 }
 
 #if MICA_INTERPOLATION == 2
@@ -118,12 +171,12 @@ static inline void take_quads(global const mica_map_query* query, private const 
 #endif
 
 typedef struct {
-  wave_list list;
+  waiting_quads waiting;
   integrator out;
 } leaf_results;
 
 #define LEAF_TAKE(query, normals, at, i, j, room_i, room_j, gathered, scratch) \
-  take_leaf(query, normals, at, i, j, room_i, room_j, &(gathered)->list, &(gathered)->out, scratch)
+  take_leaf(query, normals, at, i, j, room_i, room_j, &(gathered)->waiting, &(gathered)->out, scratch)
 #define LEAF_QUERY triangle_query
 #define LEAF_PLACE PLACE
 #define LEAF_NODE_STRIDE MICA_NODE_STRIDE
@@ -135,13 +188,14 @@ kernel void triangles(global const triangle_query* restrict queries, int query_c
                       global const short* restrict tile_nodes, global float* restrict density) {
   WAVE_DECLARE_SCRATCH(scratch);
   WAVE_SHARED float short_records[RIGHT_RECORDS], long_records[RIGHT_RECORDS];
-  WAVE_SHARED float quad_records[QUAD_FIELDS * WAVE_LIST];
+  WAVE_SHARED float thin_records[QUAD_FIELDS * WAVE_LIST], other_records[QUAD_FIELDS * WAVE_LIST];
   if (WAVE_ITEM_INDEX >= query_count) return;
   global const triangle_query* query = queries + WAVE_ITEM_INDEX;
   global const mica_map_query* place = PLACE(query);
-  leaf_results gathered = {{quad_records, 0}, {{0.0f, 0.0f}, {short_records, 0}, {long_records, 0}}};
+  leaf_results gathered = {{{thin_records, 0}, {other_records, 0}},
+                           {{0.0f, 0.0f}, {short_records, 0}, {long_records, 0}}};
   walk_leaves(query, grid, normals, block_nodes, tile_nodes, &gathered, scratch);
-  if (gathered.list.count) integrate_first_quads(place, &gathered.list, &gathered.out, scratch);
+  integrate_waiting(place, &gathered.waiting, &gathered.out, scratch);
   integrate_rest(&gathered.out, scratch);
   const float sum = wave_sum(gathered.out.total.sum, scratch);
   const float area = QUAD_SIZE * QUAD_SIZE;  // area of a quad: the integrals are over unit triangles

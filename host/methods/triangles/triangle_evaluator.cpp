@@ -12,11 +12,12 @@ namespace mica::host {
 
 namespace {
 
-std::string triangle_options(Interpolation interpolation, const TriangleSettings& settings,
+std::string triangle_options(Interpolation interpolation, const TriangleSettings& settings, int level,
                              bool first_order) {
-  return fmt::format("-DMICA_INTERPOLATION={} -DMICA_COUNT_FLOPS={} -DMICA_FIRST_ORDER={}",
-                     static_cast<int>(interpolation), static_cast<int>(settings.count_flops),
-                     static_cast<int>(first_order));
+  return fmt::format(
+      "-DMICA_INTERPOLATION={} -DMICA_COUNT_FLOPS={} -DMICA_FIRST_ORDER={} -DMICA_PRECISION={}",
+      static_cast<int>(interpolation), static_cast<int>(settings.count_flops), static_cast<int>(first_order),
+      level);
 }
 
 }  // namespace
@@ -25,11 +26,12 @@ TriangleEvaluator::TriangleEvaluator(Device& device, const Surface& surface, con
     : device_(device),
       settings_(settings),
       interpolation_(surface.interpolation()),
-      cutoff_(cutoff_for(settings.cutoff_error)) {
+      precision_(triangle_precision(settings.tolerance)) {
   const Stopwatch watch;
   const MapStructure map = build_map_structure(surface);
   build_seconds_ = watch.seconds();
-  batches_.emplace(device, map, "triangles/triangles", triangle_options(interpolation_, settings, false),
+  batches_.emplace(device, map, "triangles/triangles",
+                   triangle_options(interpolation_, settings, precision_.level, false),
                    settings.wave_form.value_or(device.wave_form()), settings.batch_queries);
 }
 
@@ -42,7 +44,8 @@ std::unique_ptr<PendingDensities> TriangleEvaluator::start(const std::vector<Que
 std::unique_ptr<PendingDensities> TriangleEvaluator::start_plain(const std::vector<Query>& queries) {
   std::vector<device_types::mica_map_query> map_queries(queries.size());
   tbb::parallel_for(std::size_t{0}, queries.size(), [&](std::size_t n) {
-    map_queries[n] = to_triangle_query(queries[n], batches_->grid(), interpolation_, cutoff_);
+    map_queries[n] = to_triangle_query(queries[n], batches_->grid(), interpolation_, precision_.cutoff);
+    map_queries[n].scale *= static_cast<float>(1 / precision_.kept);
   });
   return batches_->start(std::move(map_queries));
 }
@@ -50,11 +53,14 @@ std::unique_ptr<PendingDensities> TriangleEvaluator::start_plain(const std::vect
 std::unique_ptr<PendingDensities> TriangleEvaluator::start_turned(const std::vector<Query>& queries) {
   if (!turned_)
     turned_.emplace(device_, batches_->grid(), batches_->structure(), batches_->device_bytes(),
-                    "triangles/triangles", triangle_options(interpolation_, settings_, true),
+                    "triangles/triangles",
+                    triangle_options(interpolation_, settings_, precision_.level, true),
                     settings_.wave_form.value_or(device_.wave_form()), settings_.batch_queries);
   std::vector<device_types::mica_turned_query> turned_queries(queries.size());
   tbb::parallel_for(std::size_t{0}, queries.size(), [&](std::size_t n) {
-    turned_queries[n] = to_turned_triangle_query(queries[n], batches_->grid(), interpolation_, cutoff_);
+    turned_queries[n] =
+        to_turned_triangle_query(queries[n], batches_->grid(), interpolation_, precision_.cutoff);
+    turned_queries[n].map.scale *= static_cast<float>(1 / precision_.kept);
   });
   return turned_->start(std::move(turned_queries));
 }

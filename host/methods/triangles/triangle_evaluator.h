@@ -1,20 +1,22 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
 
 #include "host/device/device.h"
 #include "host/methods/evaluator.h"
 #include "host/methods/map/map_batches.h"
 #include "host/methods/standard.h"
+#include "host/methods/triangles/triangle_precision.h"
 #include "host/surface/surface.h"
 #include "kernels/types.h"
 
 namespace mica::host {
 
 struct TriangleSettings {
-  /// Weight, of the largest, at which culling may drop a texel. Many texels can lie just beyond the cutoff:
-  /// 3.5 times this, of the density's peak, is lost where it shows most.
-  double cutoff_error = 1e-7;
+  /// Relative L2 over queries whose half vectors hit, kExactTriangles to kRoughTriangles. A single answer is
+  /// off by this of itself and this of its footprint's peak at most.
+  double tolerance = kExactTriangles;
   std::size_t batch_queries =
       1 << 17;  ///< queries a launch, at most; less where the device's memory asks for it
   bool count_flops =
@@ -32,7 +34,7 @@ class TriangleEvaluator : public Evaluator {
 
   std::unique_ptr<PendingDensities> start(const std::vector<Query>& queries) override;
   double error_estimate(const Query& query, double density) const override {
-    return relative_bound(query.roughness) * density;
+    return std::max(settings_.tolerance, relative_bound(query.roughness)) * density;
   }
   std::string name() const override { return "triangles"; }
   std::size_t device_bytes() const override { return batches_->device_bytes(); }
@@ -46,7 +48,8 @@ class TriangleEvaluator : public Evaluator {
   Device& device_;
   TriangleSettings settings_;
   Interpolation interpolation_;
-  double cutoff_, build_seconds_ = 0;
+  TrianglePrecision precision_;
+  double build_seconds_ = 0;
   std::optional<MapBatches<device_types::mica_map_query>> batches_;
   std::optional<MapBatches<device_types::mica_turned_query>> turned_;  // compiled for the first of them
 };

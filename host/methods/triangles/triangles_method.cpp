@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "host/methods/map/map_structure.h"
 #include "host/methods/method.h"
 #include "host/methods/oracle_standard.h"
@@ -9,7 +11,9 @@
 namespace mica::host {
 namespace {
 
-constexpr double kTrianglesTolerance = 1e-4;
+double tolerance_of(const MethodSettings& settings) {
+  return settings.tolerance.value_or(kExactTriangles);
+}
 
 class TrianglesMethod : public Method {
  public:
@@ -23,10 +27,10 @@ class TrianglesMethod : public Method {
   }
 
   void check(const MethodSettings& settings) const override {
-    if (settings.tolerance && !(*settings.tolerance >= kTrianglesTolerance))
-      throw UsageError(
-          fmt::format("tolerance {}: triangles keeps a relative error of {}; for less use --ndf reference",
-                      *settings.tolerance, kTrianglesTolerance));
+    const double tolerance = tolerance_of(settings);
+    if (!(tolerance >= kExactTriangles && tolerance < 1))
+      throw UsageError(fmt::format("tolerance {}: triangles take {} to 1; for less use --ndf reference",
+                                   tolerance, kExactTriangles));
   }
 
   StructureSize structure(const StructureAsked& asked, const MethodSettings&) const override {
@@ -36,14 +40,18 @@ class TrianglesMethod : public Method {
   }
 
   std::unique_ptr<Evaluator> make_own(Device* device, const Surface* surface,
-                                      const MethodSettings&) const override {
-    return std::make_unique<TriangleEvaluator>(*device, *surface);
+                                      const MethodSettings& settings) const override {
+    TriangleSettings own;
+    own.tolerance = tolerance_of(settings);
+    return std::make_unique<TriangleEvaluator>(*device, *surface, own);
   }
 
   std::unique_ptr<Standard> standard(const Surface*, const reference::Oracle* map,
-                                     const MethodSettings&) const override {
-    return std::make_unique<OracleStandard>(*map, [](double roughness) {
-      return Promise{relative_bound(roughness), kPeakBound};
+                                     const MethodSettings& settings) const override {
+    const double tolerance = tolerance_of(settings);
+    return std::make_unique<OracleStandard>(*map, [tolerance](double roughness) {
+      if (tolerance <= kExactTriangles) return Promise{relative_bound(roughness), kPeakBound};
+      return Promise{std::max(tolerance, relative_bound(roughness)), tolerance};
     });
   }
 
