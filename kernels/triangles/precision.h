@@ -21,6 +21,18 @@
 #define COUNTED(flops, value) (value)
 #endif
 
+// Of one point of a right triangle, and of one of a strip, which is two exponentials and four integrals.
+#if MICA_PRECISION == 0
+#define POINT_FLOPS 48
+#define STRIP_FLOPS 0
+#elif MICA_PRECISION == 1
+#define POINT_FLOPS 36
+#define STRIP_FLOPS 136
+#else
+#define POINT_FLOPS 28
+#define STRIP_FLOPS 108
+#endif
+
 #define MINUS_HALF_LOG2_E (-(EXP2_SCALE * EXP2_SCALE))
 
 // Gauss-Legendre points for a Gaussian, times a Gaussian's integral up to a line of slope <= 1, on a range of

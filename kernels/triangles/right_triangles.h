@@ -56,7 +56,7 @@ static inline void integrate_first(private wave_list* list, private accumulator*
     const wave_float inside = triangle_cdf(fma(limit_slope, legendre_nodes[k], limit_middle)) - fixed;
     sum = fma(legendre_weights[k] * inside, gaussian, sum);
   }
-  accumulate(total, wave_select(zero, COUNTED(48 * points, fabs(sum) * weight), valid));
+  accumulate(total, wave_select(zero, COUNTED(POINT_FLOPS * points, fabs(sum) * weight), valid));
 }
 
 static inline void append_right_triangles(right_triangles triangles, uint bits, private wave_list* list,

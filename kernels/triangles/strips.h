@@ -46,7 +46,7 @@ static inline wave_float integrate_strips(affine_residual lower, affine_residual
     const float x = fma(0.5f, legendre_nodes[k], 0.5f);
     sum = fma(legendre_weights[k], integrate_strip(l, x, 1.0f - x) + integrate_strip(u, 1.0f - x, x), sum);
   }
-  return COUNTED(60 + 70 * count, (0.5f * 2.5066283f) * sum);
+  return COUNTED(140 + STRIP_FLOPS * count, (0.5f * 2.5066283f) * sum);
 }
 
 static inline residual choose(residual otherwise, residual chosen, wave_int mask) {

@@ -16,6 +16,7 @@
 #include "host/methods/gaussians/mixture_evaluator.h"
 #include "host/methods/map/collected_densities.h"
 #include "host/methods/map/map_query.h"
+#include "host/methods/pyramid/moment_pyramid.h"
 #include "host/methods/pyramid/pyramid_evaluator.h"
 #include "host/methods/triangles/triangle_evaluator.h"
 #include "mica/error.h"
@@ -24,26 +25,6 @@ namespace mica::host {
 namespace {
 
 constexpr double kFirstRoughness = 0.02;
-constexpr double kTrianglesError = 1e-4;  // what `triangles` are off by, at most
-
-enum class CandidateKind { pyramid, gaussians, triangles };
-
-/// Pyramids from the cheapest to the most precise, and the least relative L2 that was seen of each on maps
-/// like those of bench/pyramid_bench.cpp: for a tolerance below it, building its levels is not worth a try.
-struct PyramidCandidate {
-  PyramidPrecision precision;
-  double least_error;
-};
-const std::array<PyramidCandidate, 8> kPyramids = {{{{std::sqrt(8.0), 2, 5e-2}, 4e-3},
-                                                    {{std::sqrt(8.0), 1.5, 5e-2}, 4e-3},
-                                                    {{std::sqrt(2.0), 2, 5e-2}, 4e-3},
-                                                    {{1.5, 2, 3e-2}, 4e-3},
-                                                    {{std::sqrt(2.0), 1.5, 3e-2}, 2e-3},
-                                                    {{std::sqrt(0.5), 1.5, 1e-2}, 1e-3},
-                                                    {{std::sqrt(0.5), 1, 1e-3}, 1e-4},
-                                                    {{std::sqrt(0.125), 0.75, 1e-4}, 0}}};
-
-constexpr std::size_t kPrecisePyramid = 6;  // of these: precise enough to stand for `triangles`
 
 /// Fewer do not tell a bound.
 constexpr std::size_t kFewestSamples = 16;
@@ -54,6 +35,10 @@ constexpr std::array<std::size_t, 5> kLooks = {kFewestSamples, 256, 1024, 4096, 
 constexpr double kQuantile = 2.2414;
 /// Seconds of a core that counting the costs of a class may take.
 constexpr double kCountingSeconds = 0.1;
+/// Share of what a class's queries cost by triangles that looking at them may take, and of all classes' that
+/// structures may which are then not used.
+constexpr double kLookingShare = 0.1;
+constexpr double kExactCost = 3;  ///< of exact triangles, in those of a tolerance; or less
 
 /// Evaluates up to the first `end` of the queries, from where `densities` end.
 void extend(Evaluator* evaluator, const std::vector<Query>& queries, std::size_t end,
@@ -72,33 +57,6 @@ double typical_density(const std::vector<float>& densities) {
 
 }  // namespace
 
-struct AutoEvaluator::Candidate {
-  CandidateKind method;
-  int elements;
-  PyramidPrecision precision;
-  std::string label;
-  std::unique_ptr<Evaluator> built = {};
-
-  std::unique_ptr<Evaluator> make(Device& device, const Surface& surface,
-                                  const std::shared_ptr<PyramidStore>& store) const {
-    if (method == CandidateKind::triangles) return std::make_unique<TriangleEvaluator>(device, surface);
-    if (method == CandidateKind::gaussians) {
-      MixtureSettings settings;
-      settings.elements = elements;
-      return std::make_unique<GaussianEvaluator>(device, surface, settings);
-    }
-    PyramidSettings settings;
-    settings.precision = precision;
-    settings.store = store;
-    return std::make_unique<PyramidEvaluator>(device, surface, settings);
-  }
-
-  CostModel cost_model(const Surface& surface) const {
-    if (method == CandidateKind::triangles) return triangles_cost(surface.interpolation());
-    return method == CandidateKind::gaussians ? gaussians_cost(elements) : pyramid_cost();
-  }
-};
-
 AutoEvaluator::AutoEvaluator(Device& device, const Surface& surface, double tolerance, double looking_seconds)
     : device_(device),
       surface_(surface),
@@ -111,20 +69,7 @@ AutoEvaluator::AutoEvaluator(Device& device, const Surface& surface, double tole
     throw UsageError(
         fmt::format("tolerance {}: auto keeps {} or more; for less use triangles (1e-4) or reference",
                     tolerance, kLeastTolerance));
-  // Of each method from the cheapest to the most precise.
-  for (std::size_t n = 0; n < kPyramids.size(); ++n) {
-    const auto& [precision, least_error] = kPyramids[n];
-    if (n == kPrecisePyramid) precise_pyramid_ = candidates_.size();
-    if (tolerance > least_error)
-      candidates_.push_back({CandidateKind::pyramid, 0, precision,
-                             fmt::format("pyramid, blocks of {:.2g} footprints, cells of {:.2g} roughnesses",
-                                         precision.block_ratio, precision.cell_ratio)});
-  }
-  if (surface.interpolation() != Interpolation::bicubic)
-    for (const int elements : {1, 2, 4})
-      candidates_.push_back(
-          {CandidateKind::gaussians, elements, {}, fmt::format("gaussians, {} a texel and axis", elements)});
-  candidates_.push_back({CandidateKind::triangles, 0, {}, "triangles"});
+  candidates_ = candidates_for(tolerance, surface.interpolation());
 }
 AutoEvaluator::~AutoEvaluator() = default;
 
@@ -166,19 +111,32 @@ void AutoEvaluator::calibrate(const CalibrationSample& sample) {
   std::map<QueryClass, std::vector<Query>> by_class;
   for (const Query& query : sample.queries)
     by_class[class_of(query, surface_.width(), surface_.height())].push_back(query);
-  for (const auto& [kind, queries] : by_class) {
+  std::vector<Samples> classes;
+  for (auto& [kind, queries] : by_class) {
     const auto count = sample.counts.find(kind);
-    const double many = std::numeric_limits<double>::infinity();
-    choices_.push_back(choose(kind, {queries, count == sample.counts.end() ? many : count->second}));
+    Samples samples{kind, std::move(queries)};
+    if (count != sample.counts.end()) samples.in_job = count->second;
+    samples.cost = cost(&candidates_.all[candidates_.triangles], samples.queries,
+                        std::min<std::size_t>(2, samples.queries.size()));
+    may_be_lost_ += kLookingShare * samples.in_job * samples.cost;
+    classes.push_back(std::move(samples));
   }
-  // What nothing uses is not kept.
+  // Wide footprints first: there structures keep the tolerance most often, and one that is used is not lost.
+  std::reverse(classes.begin(), classes.end());
+  for (Samples& samples : classes) choices_.push_back(choose(&samples));
+  std::sort(choices_.begin(), choices_.end(),
+            [](const AutoChoice& a, const AutoChoice& b) { return a.kind < b.kind; });
+  drop_what_nothing_uses();
+}
+
+void AutoEvaluator::drop_what_nothing_uses() {
   flops_counter_.reset(), elements_counter_.reset();
-  for (Candidate& candidate : candidates_)
+  for (Candidate& candidate : candidates_.all)
     if (!is_chosen(candidate)) candidate.built.reset();
   std::set<double> cell_widths;
   for (const auto& [kind, candidate] : candidate_of_)
-    if (candidates_[candidate].method == CandidateKind::pyramid)
-      cell_widths.insert(cell_width(kind.roughness, candidates_[candidate].precision));
+    if (candidates_.all[candidate].kind == CandidateKind::pyramid)
+      cell_widths.insert(cell_width(kind.roughness, candidates_.all[candidate].precision));
   store_->keep(cell_widths);
 }
 
@@ -186,55 +144,81 @@ void AutoEvaluator::calibrate(std::size_t count, const QuerySource& query, doubl
   calibrate(calibration_sample(count, kMostSamples, surface_.width(), surface_.height(), query, scale));
 }
 
-double AutoEvaluator::build_cost(const Candidate& candidate) const {
-  return candidate.cost_model(surface_).texel * surface_.width() * surface_.height();
-}
-
 bool AutoEvaluator::is_chosen(const Candidate& candidate) const {
   return std::any_of(candidate_of_.begin(), candidate_of_.end(),
-                     [&](const auto& entry) { return &candidates_[entry.second] == &candidate; });
+                     [&](const auto& entry) { return &candidates_.all[entry.second] == &candidate; });
 }
 
-AutoChoice AutoEvaluator::choose(const QueryClass& kind, Samples samples) {
-  Candidate* const triangles = &candidates_.back();
-  AutoChoice best{kind, triangles->label, 0, 0, kTrianglesError};
-  best.cost = cost(triangles, samples.queries, std::min<std::size_t>(2, samples.queries.size()));
-  const auto affordable = [&](double seconds, std::size_t fewest, std::size_t most) {
-    return std::min(std::clamp(static_cast<std::size_t>(1e9 * seconds / best.cost), fewest, most),
-                    samples.queries.size());
+AutoChoice AutoEvaluator::choose(Samples* samples) {
+  Candidate* const triangles = &candidates_.all[candidates_.triangles];
+  AutoChoice best{samples->kind, triangles->label, 0, 0, tolerance_};  // which they promise
+  best.cost = samples->cost;
+  candidate_of_[samples->kind] = candidates_.triangles;
+  const double worth = 1e-9 * samples->in_job * best.cost;  // seconds
+  const auto affordable = [&](double seconds, double cost, std::size_t fewest, std::size_t most) {
+    const double count = std::min(1e9 * seconds / cost, static_cast<double>(most));
+    return std::min(std::max(static_cast<std::size_t>(count), fewest), samples->queries.size());
   };
-  samples.counted = affordable(kCountingSeconds, 2, 64);
-  if (samples.counted > 2) best.cost = cost(triangles, samples.queries, samples.counted);
-  samples.most = affordable(looking_seconds_, kFewestSamples, kLooks.back());
-  samples.reference = triangles, samples.reference_error = kTrianglesError;
-  extend(evaluator(triangles), samples.queries, std::min(kFewestSamples, samples.most), &samples.expected);
-  if (samples.most < kLooks[1] && samples.most < samples.queries.size() &&
-      samples.in_job * best.cost > build_cost(candidates_[precise_pyramid_]))
-    refer_to_pyramid(&samples);
-  candidate_of_[kind] = candidates_.size() - 1;
-  for (const CandidateKind method : {CandidateKind::pyramid, CandidateKind::gaussians}) {
-    for (std::size_t n = 0; n + 1 < candidates_.size() && samples.most >= kFewestSamples; ++n) {
-      if (candidates_[n].method != method) continue;
-      AutoChoice choice{kind, candidates_[n].label};
-      choice.cost = best.cost;  // which is the one to beat
-      const Verdict verdict = judge(&candidates_[n], &samples, &choice);
-      if (verdict == Verdict::keeps) best = choice, candidate_of_[kind] = n;
-      if (verdict != Verdict::breaks) break;  // the next ones of this method cost more
-    }
-  }
-  best.samples = best.samples == 0 ? samples.expected.size() : best.samples;
-  best.typical_density = typical_density(samples.expected);
+  const double exact_cost = kExactCost * best.cost;
+  if (affordable(kLookingShare * worth, exact_cost, 0, kFewestSamples) <
+      std::min(kFewestSamples, samples->queries.size()))
+    return best;
+  samples->counted = affordable(std::min(kCountingSeconds, 0.1 * kLookingShare * worth), best.cost, 2, 64);
+  if (samples->counted > 2) best.cost = cost(triangles, samples->queries, samples->counted);
+  samples->most = affordable(std::min(looking_seconds_, kLookingShare * worth), exact_cost, kFewestSamples,
+                             kLooks.back());
+  samples->reference = &candidates_.all[candidates_.exact_triangles];
+  samples->reference_error = kExactTriangles;
+  extend(evaluator(samples->reference), samples->queries, std::min(kFewestSamples, samples->most),
+         &samples->expected);
+  const Candidate& precise = candidates_.all[candidates_.precise_pyramid];
+  if (samples->most < kLooks[1] && samples->most < samples->queries.size() &&
+      kLookingShare * samples->in_job * best.cost > precise.build_cost(surface_, samples->kind.roughness))
+    refer_to_pyramid(samples);
+  for (const CandidateKind kind : {CandidateKind::pyramid, CandidateKind::gaussians})
+    choose_of(kind, samples, &best);
+  if (candidate_of_[samples->kind] == candidates_.triangles) check_triangles(samples, &best);
+  best.typical_density = typical_density(samples->expected);
   return best;
+}
+
+void AutoEvaluator::choose_of(CandidateKind method, Samples* samples, AutoChoice* best) {
+  for (std::size_t n = 0; n < candidates_.all.size() && samples->most >= kFewestSamples; ++n) {
+    Candidate& candidate = candidates_.all[n];
+    if (candidate.kind != method) continue;
+    AutoChoice choice{samples->kind, candidate.label};
+    choice.cost = best->cost;  // which is the one to beat
+    const Verdict verdict = judge(&candidate, samples, &choice);
+    if (verdict == Verdict::keeps) *best = choice, candidate_of_[samples->kind] = n;
+    if (verdict != Verdict::breaks) break;  // the next ones of this method cost more
+  }
+}
+
+void AutoEvaluator::check_triangles(Samples* samples, AutoChoice* choice) {
+  const std::size_t count = std::min(kLooks[1], samples->most);
+  if (count < std::min(kLooks[1], samples->queries.size())) return;  // too few to contradict a promise
+  std::vector<float> densities;
+  extend(evaluator(samples->reference), samples->queries, count, &samples->expected);
+  extend(evaluator(&candidates_.all[candidates_.triangles]), samples->queries, samples->expected.size(),
+         &densities);
+  const SampledError error = sampled_error(densities, samples->expected, kQuantile);
+  choice->samples = samples->expected.size();
+  choice->relative_l2 = error.relative_l2;
+  choice->upper_bound = std::min(tolerance_, error.upper_bound + samples->reference_error);
+  if (error.lower_bound <= tolerance_ + samples->reference_error) return;
+  candidate_of_[samples->kind] = candidates_.exact_triangles;
+  choice->evaluator = candidates_.all[candidates_.exact_triangles].label;
+  choice->relative_l2 = 0, choice->upper_bound = kExactTriangles;
 }
 
 void AutoEvaluator::refer_to_pyramid(Samples* samples) {
   constexpr double largest_share = 0.25;  // of the tolerance
-  Candidate* const precise = &candidates_[precise_pyramid_];
+  Candidate* const precise = &candidates_.all[candidates_.precise_pyramid];
   if (samples->expected.size() < kFewestSamples || !pyramid(precise)->choose(samples->queries.front()))
     return;
   std::vector<float> densities;
   extend(evaluator(precise), samples->queries, samples->expected.size(), &densities);
-  const double error = sampled_error(densities, samples->expected, kQuantile).upper_bound + kTrianglesError;
+  const double error = sampled_error(densities, samples->expected, kQuantile).upper_bound + kExactTriangles;
   if (error > largest_share * tolerance_) return;
   samples->reference = precise, samples->reference_error = error;
   samples->expected = std::move(densities);
@@ -242,14 +226,21 @@ void AutoEvaluator::refer_to_pyramid(Samples* samples) {
 }
 
 AutoEvaluator::Verdict AutoEvaluator::judge(Candidate* candidate, Samples* samples, AutoChoice* choice) {
-  if (candidate->method == CandidateKind::pyramid && !pyramid(candidate)->choose(samples->queries.front()))
-    return Verdict::breaks;  // it would only pass them on to the texels
+  const bool is_pyramid = candidate->kind == CandidateKind::pyramid;
+  if (is_pyramid && candidate->precision.block_ratio * std::exp2(samples->kind.size + 0.5) < kFinestBlock)
+    return Verdict::breaks;  // no level has blocks so small
   const CostModel model = candidate->cost_model(surface_);
   const int width = surface_.width(), height = surface_.height();
-  if (!is_chosen(*candidate) && samples->in_job * choice->cost < build_cost(*candidate))
+  const double build_cost =
+      is_chosen(*candidate) ? 0 : candidate->build_cost(surface_, samples->kind.roughness);
+  if (samples->in_job * choice->cost < build_cost)
     return Verdict::costs_more;  // others have answered by the time that it is built
   if (!(model.of(blocks_reached(samples->queries.front(), width, height), 0) < choice->cost))
-    return Verdict::costs_more;  // whatever would be counted
+    return Verdict::costs_more;                           // whatever would be counted
+  if (build_cost > may_be_lost_) return Verdict::breaks;  // what follows may be there already
+  may_be_lost_ -= build_cost;
+  if (is_pyramid && !pyramid(candidate)->choose(samples->queries.front()))
+    return Verdict::breaks;  // it would only pass them on to the texels
   const double cost_of_query = cost(candidate, samples->queries, samples->counted);
   if (!(cost_of_query < choice->cost)) return Verdict::costs_more;
   Evaluator* const built = evaluator(candidate);
@@ -268,6 +259,7 @@ AutoEvaluator::Verdict AutoEvaluator::judge(Candidate* candidate, Samples* sampl
       choice->samples = count, choice->cost = cost_of_query;
       choice->relative_l2 = error.relative_l2;
       choice->upper_bound = upper_bound;
+      may_be_lost_ += build_cost;  // it is not lost
       return Verdict::keeps;
     }
     if (error.lower_bound > tolerance_ + samples->reference_error || last) break;
@@ -278,9 +270,9 @@ AutoEvaluator::Verdict AutoEvaluator::judge(Candidate* candidate, Samples* sampl
 double AutoEvaluator::cost(Candidate* candidate, const std::vector<Query>& queries, std::size_t count) {
   const std::vector<Query> some(queries.begin(), queries.begin() + static_cast<std::ptrdiff_t>(count));
   std::vector<float> counts;
-  if (candidate->method == CandidateKind::pyramid) {
+  if (candidate->kind == CandidateKind::pyramid) {
     counts = pyramid(candidate)->count_elements(some);
-  } else if (candidate->method == CandidateKind::gaussians) {
+  } else if (candidate->kind == CandidateKind::gaussians) {
     if (!elements_counter_) {
       MixtureSettings settings;
       settings.elements = kCountedMixture;
@@ -291,8 +283,10 @@ double AutoEvaluator::cost(Candidate* candidate, const std::vector<Query>& queri
   } else {
     if (!flops_counter_) {
       TriangleSettings settings;
+      settings.tolerance = candidate->tolerance;
       settings.count_flops = true;
-      flops_counter_ = std::make_unique<TriangleEvaluator>(device_, surface_, settings);
+      flops_counter_ = std::make_unique<TriangleEvaluator>(
+          device_, static_cast<const TriangleEvaluator&>(*evaluator(candidate)), settings);
     }
     counts = flops_counter_->evaluate(some);
   }
@@ -308,11 +302,16 @@ double AutoEvaluator::error_estimate(const Query& query, double density) const {
   for (const AutoChoice& choice : choices_)
     if (!(choice.kind < kind) && !(kind < choice.kind))
       return choice.upper_bound * std::sqrt(density * std::max(density, choice.typical_density));
-  return kTrianglesError * density;  // which is who answers what was not sampled
+  return tolerance_ * density;  // of triangles, who answer what was not sampled
 }
 
 Evaluator* AutoEvaluator::evaluator(Candidate* candidate) {
-  if (!candidate->built) candidate->built = candidate->make(device_, surface_, store_);
+  if (candidate->built) return candidate->built.get();
+  const TriangleEvaluator* triangles = nullptr;
+  for (const Candidate& other : candidates_.all)
+    if (other.kind == CandidateKind::triangles && other.built)
+      triangles = static_cast<const TriangleEvaluator*>(other.built.get());
+  candidate->built = candidate->make(device_, surface_, store_, triangles);
   return candidate->built.get();
 }
 
@@ -324,41 +323,41 @@ std::unique_ptr<PendingDensities> AutoEvaluator::start(const std::vector<Query>&
   std::vector<std::size_t> candidates(queries.size());
   tbb::parallel_for(std::size_t{0}, queries.size(), [&](std::size_t n) {
     const auto found = candidate_of_.find(class_of(queries[n], surface_.width(), surface_.height()));
-    candidates[n] = found == candidate_of_.end() ? candidates_.size() - 1 : found->second;
+    candidates[n] = found == candidate_of_.end() ? candidates_.triangles : found->second;
   });
   const bool alike =
       std::adjacent_find(candidates.begin(), candidates.end(), std::not_equal_to<>()) == candidates.end();
-  if (alike && !queries.empty()) return evaluator(&candidates_[candidates.front()])->start(queries);
-  std::vector<std::vector<std::size_t>> places_of(candidates_.size());
+  if (alike && !queries.empty()) return evaluator(&candidates_.all[candidates.front()])->start(queries);
+  std::vector<std::vector<std::size_t>> places_of(candidates_.all.size());
   for (std::size_t n = 0; n < queries.size(); ++n) places_of[candidates[n]].push_back(n);
   auto all = std::make_unique<CollectedDensities>(queries.size());
-  for (std::size_t candidate = 0; candidate < candidates_.size(); ++candidate) {
+  for (std::size_t candidate = 0; candidate < candidates_.all.size(); ++candidate) {
     std::vector<std::size_t>& places = places_of[candidate];
     if (places.empty()) continue;
     std::vector<Query> some(places.size());
     for (std::size_t n = 0; n < places.size(); ++n) some[n] = queries[places[n]];
-    all->add(evaluator(&candidates_[candidate])->start(some), std::move(places));
+    all->add(evaluator(&candidates_.all[candidate])->start(some), std::move(places));
   }
   return all;
 }
 
 std::size_t AutoEvaluator::device_bytes() const {
   std::size_t bytes = store_->device_bytes();
-  for (const Candidate& candidate : candidates_)
+  for (const Candidate& candidate : candidates_.all)
     if (candidate.built) bytes += candidate.built->device_bytes();
   return bytes;
 }
 
 double AutoEvaluator::build_seconds() const {
   double seconds = store_->build_seconds();
-  for (const Candidate& candidate : candidates_)
+  for (const Candidate& candidate : candidates_.all)
     if (candidate.built) seconds += candidate.built->build_seconds();
   return seconds;
 }
 
 double AutoEvaluator::device_seconds() const {
   double seconds = store_->device_seconds();
-  for (const Candidate& candidate : candidates_)
+  for (const Candidate& candidate : candidates_.all)
     if (candidate.built) seconds += candidate.built->device_seconds();
   return seconds;
 }

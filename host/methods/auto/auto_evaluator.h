@@ -1,12 +1,14 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "host/device/device.h"
+#include "host/methods/auto/candidate.h"
 #include "host/methods/evaluator.h"
 #include "host/surface/surface.h"
 
@@ -28,10 +30,11 @@ struct CalibrationSample {
 CalibrationSample calibration_sample(std::size_t count, std::size_t each, int map_width, int map_height,
                                      const std::function<Query(std::size_t)>& query, double scale = 1);
 
-/// `auto`: for each class of a job's queries the cheapest evaluator that keeps a tolerance, as a sample of
-/// them tells at 95% confidence. Candidates are pyramids of several precisions, mixtures, and `triangles`,
-/// which keeps 1e-4 and is what they are compared with. What is cheapest is told by counting elements, not by
-/// a clock: the same queries get the same answers.
+/// `auto`: for each class of a job's queries the cheapest evaluator that keeps a tolerance. `triangles` to
+/// that tolerance promise it; pyramids and mixtures are taken where a sample of the job's queries, compared
+/// with exact triangles, shows at 95% confidence that they keep it, too. To look costs at most a tenth of
+/// what the job's queries do by triangles, and what cannot be won is not looked at. What is cheapest is told
+/// by counting elements, not by a clock: the same queries get the same answers.
 class AutoEvaluator : public Evaluator {
  public:
   /// @param tolerance relative L2 over a class's queries, kLeastTolerance or more. `device` and `surface`
@@ -44,7 +47,7 @@ class AutoEvaluator : public Evaluator {
 
   /// Chooses for every class of the sample, whose queries stand in random order; the first 256 of a class are
   /// used, up to kMostSamples where these cannot tell, and fewer where they take long. Queries of other
-  /// classes go to `triangles`, and so do those of classes that are too small to repay a structure.
+  /// classes go to `triangles`, and so do those of classes that are too small to repay a look.
   void calibrate(const CalibrationSample& sample);
   double tolerance() const { return tolerance_; }
   std::vector<AutoChoice> choices() const override { return choices_; }
@@ -65,27 +68,32 @@ class AutoEvaluator : public Evaluator {
   double device_seconds() const override;
 
  private:
-  struct Candidate;
   /// Queries of a class in random order, and the densities of those looked at so far.
   struct Samples {
-    const std::vector<Query>& queries;
-    double in_job = 0;               ///< queries of the class that the job has
-    std::size_t counted = 0;         ///< of them that costs are told from
-    std::size_t most = 0;            ///< that errors may be told from
-    Candidate* reference = nullptr;  ///< what they are compared with
-    double reference_error = 0;      ///< upper bound of its relative L2
+    QueryClass kind;
+    std::vector<Query> queries;
+    double in_job = std::numeric_limits<double>::infinity();  ///< queries of the class that the job has
+    double cost = 0;                                          ///< of one by triangles, core nanoseconds
+    std::size_t counted = 0;                                  ///< of them that costs are told from
+    std::size_t most = 0;                                     ///< that errors may be told from
+    Candidate* reference = nullptr;                           ///< what they are compared with
+    double reference_error = 0;                               ///< upper bound of its relative L2
     std::vector<float> expected = {};
   };
   enum class Verdict { keeps, breaks, costs_more };
 
-  AutoChoice choose(const QueryClass& kind, Samples samples);
+  AutoChoice choose(Samples* samples);
+  /// The cheapest of a method that keeps the tolerance, in place of `best` where it is cheaper.
+  void choose_of(CandidateKind method, Samples* samples, AutoChoice* best);
+  /// How far triangles are off; exact ones, where the samples contradict what triangles promise.
+  void check_triangles(Samples* samples, AutoChoice* choice);
+  void drop_what_nothing_uses();
   /// Compares with a precise pyramid in place of triangles, where these show that it is precise.
   void refer_to_pyramid(Samples* samples);
   /// @param choice its cost is the one to beat, and then the candidate's; and its error.
   Verdict judge(Candidate* candidate, Samples* samples, AutoChoice* choice);
   /// Nanoseconds of a core that a query takes, by the first `count`.
   double cost(Candidate* candidate, const std::vector<Query>& queries, std::size_t count);
-  double build_cost(const Candidate& candidate) const;  ///< core nanoseconds
   bool is_chosen(const Candidate& candidate) const;
   Evaluator* evaluator(Candidate* candidate);
   PyramidEvaluator* pyramid(Candidate* candidate);  ///< the same, of one that is a pyramid
@@ -94,8 +102,8 @@ class AutoEvaluator : public Evaluator {
   const Surface& surface_;
   double tolerance_, looking_seconds_;
   std::shared_ptr<PyramidStore> store_;  ///< of the candidates that are pyramids
-  std::vector<Candidate> candidates_;
-  std::size_t precise_pyramid_ = 0;                              ///< of these
+  Candidates candidates_;
+  double may_be_lost_ = 0;  ///< on structures that are built to be looked at, core nanoseconds
   std::unique_ptr<Evaluator> flops_counter_, elements_counter_;  // while it calibrates
   std::map<QueryClass, std::size_t> candidate_of_;
   std::vector<AutoChoice> choices_;

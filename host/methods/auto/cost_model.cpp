@@ -22,7 +22,7 @@ CostModel triangles_cost(Interpolation interpolation) {
   return {0, 879, 0.0139, 20};
 }
 CostModel pyramid_cost() {
-  return {365, 0, 1.42, 300};
+  return {365, 0, 1.42, 150};
 }
 
 }  // namespace mica::host

@@ -6,8 +6,8 @@
 namespace mica::host {
 
 /// Nanoseconds of one core, of a query, of one block of the map that its footprint reaches, and of one thing
-/// that is counted of it; and of building the structure, of a texel of the map. Measured on one machine: only
-/// their ratios matter. `auto_costs` fits them.
+/// that is counted of it; and of building the structure, of a texel of the map, or of a piece of one that a
+/// pyramid merges. Measured on one machine: only their ratios matter. `auto_costs` fits them.
 struct CostModel {
   double query, block, count, texel;
 

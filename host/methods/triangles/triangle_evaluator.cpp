@@ -35,6 +35,17 @@ TriangleEvaluator::TriangleEvaluator(Device& device, const Surface& surface, con
                    settings.wave_form.value_or(device.wave_form()), settings.batch_queries);
 }
 
+TriangleEvaluator::TriangleEvaluator(Device& device, const TriangleEvaluator& same_map,
+                                     const TriangleSettings& settings)
+    : device_(device),
+      settings_(settings),
+      interpolation_(same_map.interpolation_),
+      precision_(triangle_precision(settings.tolerance)) {
+  batches_.emplace(device, same_map.batches_->grid(), same_map.batches_->structure(), 0,
+                   "triangles/triangles", triangle_options(interpolation_, settings, precision_.level, false),
+                   settings.wave_form.value_or(device.wave_form()), settings.batch_queries);
+}
+
 std::unique_ptr<PendingDensities> TriangleEvaluator::start(const std::vector<Query>& queries) {
   return start_by_order(
       queries, [this](const std::vector<Query>& some) { return start_plain(some); },

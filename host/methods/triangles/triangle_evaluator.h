@@ -31,6 +31,8 @@ class TriangleEvaluator : public Evaluator {
  public:
   /// Builds the map's structures and uploads them. `device` must outlive the evaluator.
   TriangleEvaluator(Device& device, const Surface& surface, const TriangleSettings& settings = {});
+  /// On the structures of another one, which counts their bytes.
+  TriangleEvaluator(Device& device, const TriangleEvaluator& same_map, const TriangleSettings& settings);
 
   std::unique_ptr<PendingDensities> start(const std::vector<Query>& queries) override;
   double error_estimate(const Query& query, double density) const override {
