@@ -65,8 +65,8 @@ void add_method_options(CommandLine* command, const MethodRegistry& methods,
 void add_tolerance_option(CommandLine* command, MethodOptions* options) {
   command
       ->add_option("--tolerance", options->tolerance,
-                   "Relative error allowed: auto keeps it as relative L2 (default 0.01), triangles keeps "
-                   "1e-4, reference takes 1e-12 to 0.1")
+                   "Relative error allowed: auto and triangles keep it as relative L2 (default 0.01 and "
+                   "1e-4), reference takes 1e-12 to 0.1")
       .type_name("ERROR");
 }
 

@@ -13,9 +13,9 @@ double blocks_reached(const Query& query, int map_width, int map_height) {
 }
 
 CostModel gaussians_cost(int elements) {
-  if (elements == 1) return {380, 221, 1.03, 50};
-  if (elements == 2) return {0, 612, 2.64, 100};
-  return {0, 820, 9.85, 300};
+  if (elements == 1) return {380, 221, 1.03, 70};
+  if (elements == 2) return {0, 612, 2.64, 160};
+  return {0, 820, 9.85, 530};
 }
 CostModel triangles_cost(Interpolation interpolation) {
   if (interpolation == Interpolation::nearest) return {0, 451, 0.0159, 20};
