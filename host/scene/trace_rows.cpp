@@ -201,7 +201,9 @@ void BlockTracer::sample_cell(int row, int column, std::uint32_t first_sample, R
                                   {light_sample(key(row, column), k, n)}));
   }
   const std::vector<std::vector<Eigen::Matrix2d>> turns = turns_of(points);
-  const bool owned = row >= 0 && row < rows_.row_count && column >= 0 && column < width_;
+  // A pixel that was fitted has queries of its own: samples in it are there for its neighbours.
+  const bool owned =
+      row >= 0 && row < rows_.row_count && column >= 0 && column < width_ && !has_fit(row, column);
   const auto pixel = owned ? static_cast<std::uint32_t>(row * width_ + column) : GlintQuery::kNone;
   const std::size_t before = queries->size();
   PixelMeans means;
@@ -215,7 +217,7 @@ void BlockTracer::sample_cell(int row, int column, std::uint32_t first_sample, R
       viewer_.ask(point, lattice_filter_.sigma_pixels,
                   {pixel, sample, key(row, column), static_cast<std::uint32_t>(k)}, turns[k], queries);
   }
-  if (!owned || has_fit(row, column)) return;
+  if (!owned) return;
   means.write(&rows_, pixel);
   rows_.query_count[pixel] =
       static_cast<std::uint16_t>(std::min<std::size_t>(queries->size() - before, 65535));
