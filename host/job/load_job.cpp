@@ -103,7 +103,6 @@ void leave_out(TableReader& table) {
 }
 
 void read_materials_of_layer(TableReader& table, Job& job) {
-  leave_out(table);
   job.scene.materials = read_materials(table, job.surfaces, job.methods);
   const auto has_id = [](const MaterialDescription& material) { return material.id.has_value(); };
   if (!std::any_of(job.scene.materials.begin(), job.scene.materials.end(), has_id))
@@ -114,12 +113,14 @@ void read_materials_of_layer(TableReader& table, Job& job) {
 
 void read_root(TableReader& table, Job& job, JobUse use) {
   table.read("seed", job.seed);
-  job.surfaces = read_surfaces(table);
   if (use == JobUse::layer) {
+    leave_out(table);
+    job.surfaces = read_surfaces(table);
     read_materials_of_layer(table, job);
   } else {
     table.read_table("image", [&](TableReader& image) { job.image = read_image(image); });
     table.read_table("frames", [&](TableReader& frames) { job.frames = read_frames(frames); });
+    job.surfaces = read_surfaces(table);
     job.scene = read_scene(table, job.surfaces, job.methods);
   }
   table.read_table("accuracy", [&](TableReader& accuracy) {
