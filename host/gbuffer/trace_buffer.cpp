@@ -94,6 +94,8 @@ class BufferBlock {
   void ask_cell(int row, int column, BufferCounts* counts, RowQueries* queries);
   std::optional<Footprint> ask_point(int row, int column, const SamplePlace& place,
                                      RowQueries* queries) const;
+  void ask_without_fit(int row, int column, const SamplePlace& place, const std::vector<double>& shares,
+                       SeenPoint* point, RowQueries* queries) const;
   std::optional<PixelFit> fit(int row, int column) const;
   bool all_see(int row, int column, std::size_t lamp) const;
   bool ask_fit(const PixelFit& fitted, std::size_t lamp, const SeenPoint& point, double share,
@@ -195,8 +197,10 @@ void BufferBlock::see_lamps(SeenPoint* point) const {
 /// The share of a lamp that no shadow hides: what arrives at a white diffuse surface beside what would.
 double BufferBlock::seen_share(int row, int column, const SeenPoint& point, std::size_t lamp) const {
   if (!knows_shadows_[lamp]) return 1;
-  const Illumination& incident = point.lamps[lamp].incident;
-  const double unshadowed = incident.irradiance.sum() * incident.direction.dot(point.frame.z);
+  const Illumination incident = illuminate(view_.lamps[lamp].light, point.hit->position);
+  const std::optional<SpotCone>& cone = view_.lamps[lamp].cone;
+  const double unshadowed = incident.irradiance.sum() * incident.direction.dot(point.frame.z) *
+                            (cone ? cone->share(point.hit->position) : 1);
   const double seen = kPi * buffer_.lamp_light[lamp].at(row, column);
   return unshadowed > 0 && seen > 0 ? std::min(seen / unshadowed, 1.0) : 0;
 }
@@ -233,27 +237,33 @@ std::optional<Footprint> BufferBlock::ask_point(int row, int column, const Sampl
   if (!gradients_.at(row, column).is_known) return std::nullopt;
   SeenPoint point = point_at(row, column);
   if (!point.faces_eye) return std::nullopt;
-  see_lamps(&point);
   const std::optional<PixelFit> fitted = fit(row, column);
-  std::vector<Eigen::Matrix2d> turns(point.lamps.size(), Eigen::Matrix2d::Zero());
-  bool is_done = true;
-  for (std::size_t lamp = 0; lamp < point.lamps.size(); ++lamp) {
-    SeenLamp& seen = point.lamps[lamp];
-    if (!(seen.visible > 0)) continue;
+  std::vector<double> shares;  // that the fit does not answer for
+  for (std::size_t lamp = 0; lamp < view_.lamps.size(); ++lamp) {
     const double share = seen_share(row, column, point, lamp);
-    seen.incident.irradiance *= share;
-    seen.visible *= share;
-    if (!(share > 0)) continue;
-    if (fitted && all_see(row, column, lamp) && ask_fit(*fitted, lamp, point, share, place, queries)) {
-      seen.visible = 0;
-      continue;
-    }
-    is_done = false;
-    if (pixels_.takes_first_order[point.material]) turns[lamp] = turn_at(row, column, lamp, point);
+    const bool is_asked = share > 0 && fitted && all_see(row, column, lamp) &&
+                          ask_fit(*fitted, lamp, point, share, place, queries);
+    shares.push_back(is_asked ? 0 : share);
   }
-  if (!is_done) viewer_.ask(point, sigma_pixels_, place, turns, queries);
+  if (std::any_of(shares.begin(), shares.end(), [](double share) { return share > 0; }))
+    ask_without_fit(row, column, place, shares, &point, queries);
   return fitted ? fitted->footprint(filter_)
                 : Footprint{wrap(point.uv), footprint_covariance(point.duv, sigma_pixels_)};
+}
+
+void BufferBlock::ask_without_fit(int row, int column, const SamplePlace& place,
+                                  const std::vector<double>& shares, SeenPoint* point,
+                                  RowQueries* queries) const {
+  see_lamps(point);
+  std::vector<Eigen::Matrix2d> turns(shares.size(), Eigen::Matrix2d::Zero());
+  for (std::size_t lamp = 0; lamp < shares.size(); ++lamp) {
+    SeenLamp& seen = point->lamps[lamp];
+    seen.visible *= shares[lamp];
+    seen.incident.irradiance *= shares[lamp];
+    if (seen.visible > 0 && pixels_.takes_first_order[point->material])
+      turns[lamp] = turn_at(row, column, lamp, *point);
+  }
+  viewer_.ask(*point, sigma_pixels_, place, turns, queries);
 }
 
 std::optional<PixelFit> BufferBlock::fit(int row, int column) const {

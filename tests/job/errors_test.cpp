@@ -51,7 +51,7 @@ const std::vector<Mistake> kUnknownKeys = {
      "elements, "
      "masking, "
      "specular, "
-     "diffuse, multiple_scattering, coat"},
+     "diffuse, multiple_scattering, id, coat"},
 };
 INSTANTIATE_TEST_SUITE_P(UnknownKey, Errors, testing::ValuesIn(kUnknownKeys));
 
