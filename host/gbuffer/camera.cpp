@@ -36,12 +36,12 @@ std::optional<Eigen::Vector2d> BufferCamera::project(const Eigen::Vector3d& posi
 }
 
 double SpotCone::share(const Eigen::Vector3d& point) const {
-  const double inside = (point - position).normalized().dot(axis) - cos_half_angle;
+  const double cosine = (point - position).normalized().dot(axis), inside = cosine - cos_half_angle;
   if (!(inside > 0)) return 0;
-  const double width = blend * (1 - cos_half_angle);
-  if (inside >= width) return 1;
+  const double fall = falls_with_cosine ? cosine : 1, width = blend * (1 - cos_half_angle);
+  if (inside >= width) return fall;
   const double x = inside / width;
-  return x * x * (3 - 2 * x);
+  return fall * x * x * (3 - 2 * x);
 }
 
 }  // namespace mica::host

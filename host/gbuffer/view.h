@@ -46,6 +46,7 @@ class BufferCamera {
 struct SpotCone {
   Eigen::Vector3d position, axis;  ///< axis unit, in which it shines
   double cos_half_angle = 0, blend = 0;
+  bool falls_with_cosine = false;  ///< to the axis, besides
 
   /// Share of its intensity in the direction of a point, [0, 1].
   double share(const Eigen::Vector3d& point) const;
@@ -69,8 +70,9 @@ struct BufferView {
 ///
 /// Powers are those of Blender: a point or spot of P watts has an intensity of P / (4 pi) in all directions,
 /// an area one the radiance P / (pi area), a sun the irradiance P; times 2^exposure and the colour. An area
-/// lamp is a disk of the same area. Throws FileError for a file that cannot be read, that is no JSON, or that
-/// lacks or has wrong values; the message names them.
+/// lamp is a disk of the same area. Where the key `blender` names a version before 4 an area lamp has the
+/// radiance P / (4 area), and a spot falls with the cosine to its axis. Throws FileError for a file that
+/// cannot be read, that is no JSON, or that lacks or has wrong values; the message names them.
 BufferView read_view(const std::string& path);
 
 }  // namespace mica::host

@@ -23,8 +23,9 @@ class View : public FolderTest {
     std::ofstream(path("view.json")) << text;
     return path("view.json");
   }
-  BufferView with_lamp(const std::string& lamp) const {
-    return read_view(write(R"({"resolution": [160, 90], "camera": {"type": "PERSP", )" +
+  BufferView with_lamp(const std::string& lamp, const std::string& blender = "5.0.1") const {
+    return read_view(write(R"({"blender": ")" + blender +
+                           R"(", "resolution": [160, 90], "camera": {"type": "PERSP", )" +
                            std::string(kCamera) + R"(}, "lamps": [{"name": "a", "color": [1, 0.5, 0], )" +
                            kNoTurn + ", " + lamp + "}]}"));
   }
@@ -115,6 +116,15 @@ TEST_F(View, AreaHasItsRadianceInADiskOfItsArea) {
             1e-12);  // radiance P / (pi area), times area
   const auto round = light<DiskLight>(R"("type": "AREA", "energy": 6, "shape": "DISK", "size": [0.5, 9])");
   EXPECT_NEAR(round.radius * round.radius, 0.25 * 2 * 0.25 * 3, 1e-12);
+}
+
+/// Cycles 3.4.1: kernel/light/light.h and common.h.
+TEST_F(View, LampsOfBlender3AreThoseOfItsTime) {
+  const BufferLamp area =
+      with_lamp(R"("type": "AREA", "energy": 6, "shape": "SQUARE", "size": [0.5, 0])", "3.4.1").lamps.front();
+  EXPECT_LT((std::get<DiskLight>(area.light).intensity - Color(1, 0.5, 0) * 6 / 4).norm(), 1e-12);
+  const BufferLamp spot = with_lamp(R"("type": "SPOT", "energy": 8, "spot_size": 1)", "3.4.1").lamps.front();
+  EXPECT_NEAR(spot.cone->share({1 + std::tan(0.4), 2, 2}), std::cos(0.4), 1e-12);
 }
 
 TEST_F(View, SaysWhatIsWrongAndWhere) {
