@@ -17,14 +17,20 @@ class Layer : public FolderTest {
  protected:
   void write(const std::string& file, const std::string& text) const { std::ofstream(path(file)) << text; }
 
-  LayerResult make(const Image& buffer, const Camera& camera, LayerSettings settings = {},
+  LayerResult make(const Image& buffer, const Camera& camera, const LayerSettings& settings = {},
                    int rows_a_block = 0, const std::string& scene = materials()) {
     write_exr(path("g.exr"), buffer);
     write("g.json", view(camera));
+    return make(path("g"), {}, settings, rows_a_block, scene);
+  }
+
+  /// @param name of the buffer's file and of its camera's, without extensions.
+  LayerResult make(const std::string& name, const BufferOptions& options, const LayerSettings& settings,
+                   int rows_a_block, const std::string& scene) {
     write("scene.toml", scene);
-    const BufferView seen = read_view(path("g.json"));
+    const BufferView seen = read_view(name + ".json");
     Job job = load_job(path("scene.toml"), {}, MethodRegistry::builtin(), 0, JobUse::layer);
-    GBuffer opened(path("g.exr"), seen, job.scene.materials, settings.scale, {});
+    GBuffer opened(name + ".exr", seen, job.scene.materials, settings.scale, options);
     job = layer_job(job, seen, opened.window(), settings);
     Plan plan = make_plan(job);
     if (rows_a_block > 0) plan.rows_a_block = rows_a_block;
@@ -140,6 +146,49 @@ TEST_F(Layer, OfAPlaneLooksAsItsPicture) {
   EXPECT_EQ(channel("coverage"), ids);
   for (const float alpha : channel("A")) EXPECT_EQ(alpha, 0);
   EXPECT_EQ(layer_->metadata()["Software"], "a renderer");
+}
+
+/// A corner of what Blender 5.3 wrote: many parts, a data window, a lamp's light, another material.
+TEST_F(Layer, OfBlendersPlaneLooksAsItsPicture) {
+  const std::string file = MICA_TEST_DATA "/blender_5_3_plane";
+  const std::string surface =
+      "surface.bumps = { generate = \"spectrum\", resolution = 256, rms_slope = 0.4, correlation = 8, seed = "
+      "1 }\n"
+      "material.a = { surface = \"bumps\", repeat = [4, 4], roughness = 0.1, id = 2 }\n";
+  LayerSettings settings;
+  settings.aovs = {LayerAov::density};
+  BufferOptions options;
+  options.skips_other_ids = true;
+  make(file, options, settings, 0, surface);
+  const FileWindow& window = layer_->window();
+  EXPECT_EQ(window.top, 44);
+  EXPECT_EQ(window.whole_width, 160);
+  const Image expected = picture(
+      "image = { width = 160, height = 90, filter = \"gaussian\", aovs = [\"ndf\", \"queries\"] }\n"
+      "camera = { position = [0, -6, 3], look_at = [0, -5.0611236691474915, 2.6557453572750092], "
+      "fov = 22.895194 }\n" +
+      surface +
+      "shape = [{ type = \"plane\", size = 8, material = \"a\" }]\n"
+      "light = [{ type = \"directional\", direction = [0.5642766356468201, 0.2821381390094757, "
+      "-0.7758801579475403], irradiance = [2, 2, 2] }]\n");
+  const auto part_of = [&](const std::string& name) {
+    const std::vector<float> all = channel(expected, name);
+    std::vector<float> part;
+    for (int row = 0; row < window.height; ++row)
+      for (int column = 0; column < window.width; ++column)
+        part.push_back(all[static_cast<std::size_t>((row + window.top) * 160 + column)]);
+    return part;
+  };
+  ChannelFile buffer(file + ".exr");
+  std::vector<float> ids;
+  for (int n = 0; n < static_cast<int>(buffer.channels().size()); ++n)
+    if (buffer.channels()[static_cast<std::size_t>(n)].name == "ViewLayer.glint_id.X")
+      for (const float id : buffer.read(0, window.height, {n})) ids.push_back(id == 2 ? 1.0f : 0.0f);
+  const Difference densities =
+      difference(channel("D"), part_of("ndf.Y"), part_of("queries.Y"), ids, window.width);
+  EXPECT_GT(densities.pixels, 300);
+  EXPECT_LT(densities.mean, 0.001);
+  EXPECT_LT(densities.largest, 0.02);
 }
 
 TEST_F(Layer, OfFourTimesThePixelsLooksAsThePicture) {
