@@ -129,23 +129,11 @@ double area_of(const ViewReader& lamp, const Eigen::Matrix4d& to_world) {
   return is_round ? sides * kPi / 4 : sides;
 }
 
-/// Blender's definitions, some of which have changed.
-struct BlenderUnits {
-  bool is_before_4 = false;
-};
-
-BlenderUnits units_of(const ViewReader& view) {
-  if (!view.has("blender")) return {};
-  const int major = std::atoi(view.text("blender").c_str());
-  return {major > 0 && major < 4};
-}
-
-LightDescription area_light(const ViewReader& lamp, const Eigen::Matrix4d& to_world, const Color& watts,
-                            const BlenderUnits& units) {
+LightDescription area_light(const ViewReader& lamp, const Eigen::Matrix4d& to_world, const Color& watts) {
   const double area = area_of(lamp, to_world);
   const Eigen::Vector3d position = to_world.block<3, 1>(0, 3);
   if (!(area > 0)) lamp.fail("size", "found no area; expected two lengths above 0");
-  const Color intensity = watts / (units.is_before_4 ? 4 : kPi) * (lamp.flag("normalize", true) ? 1 : area);
+  const Color intensity = watts / kPi * (lamp.flag("normalize", true) ? 1 : area);
   return DiskLight{position, -to_world.block<3, 1>(0, 2).normalized(), std::sqrt(area / kPi), intensity};
 }
 
@@ -165,13 +153,19 @@ LightDescription sun_light(const ViewReader& lamp, const Eigen::Matrix4d& to_wor
   return DirectionalLight{-to_world.block<3, 1>(0, 2).normalized(), irradiance * share, radius};
 }
 
-SpotCone spot_cone(const ViewReader& lamp, const Eigen::Matrix4d& to_world, const BlenderUnits& units) {
-  const double angle = lamp.number("spot_size", 0, kPi);
-  return {to_world.block<3, 1>(0, 3), -to_world.block<3, 1>(0, 2).normalized(), std::cos(angle / 2),
-          lamp.number("spot_blend", 0, 0, 1), units.is_before_4};
+/// Spots of Blender before 4.0 fall with the cosine to their axis.
+bool is_before_4(const ViewReader& view) {
+  const int major = view.has("blender") ? std::atoi(view.text("blender").c_str()) : 0;
+  return major > 0 && major < 4;
 }
 
-BufferLamp read_lamp(const ViewReader& reader, const BlenderUnits& units, std::vector<std::string>* notes) {
+SpotCone spot_cone(const ViewReader& lamp, const Eigen::Matrix4d& to_world, bool falls_with_cosine) {
+  const double angle = lamp.number("spot_size", 0, kPi);
+  return {to_world.block<3, 1>(0, 3), -to_world.block<3, 1>(0, 2).normalized(), std::cos(angle / 2),
+          lamp.number("spot_blend", 0, 0, 1), falls_with_cosine};
+}
+
+BufferLamp read_lamp(const ViewReader& reader, bool falls_with_cosine, std::vector<std::string>* notes) {
   BufferLamp lamp;
   lamp.name = reader.text("name");
   const std::string type = reader.text("type");
@@ -180,10 +174,10 @@ BufferLamp read_lamp(const ViewReader& reader, const BlenderUnits& units, std::v
   if (type == "SUN") {
     lamp.light = sun_light(reader, to_world, watts);
   } else if (type == "AREA") {
-    lamp.light = area_light(reader, to_world, watts, units);
+    lamp.light = area_light(reader, to_world, watts);
   } else if (type == "POINT" || type == "SPOT") {
     lamp.light = point_light(reader, to_world, watts);
-    if (type == "SPOT" && reader.has("spot_size")) lamp.cone = spot_cone(reader, to_world, units);
+    if (type == "SPOT" && reader.has("spot_size")) lamp.cone = spot_cone(reader, to_world, falls_with_cosine);
     if (type == "SPOT" && !lamp.cone)
       notes->push_back("lamp " + printable(lamp.name) +
                        ": a spot without spot_size shines to all sides but where its visibility is known");
@@ -249,9 +243,9 @@ BufferView read_view(const std::string& path) {
   const std::vector<double> resolution = reader.numbers("resolution", 2, 1, 65536);
   const int width = static_cast<int>(resolution[0]), height = static_cast<int>(resolution[1]);
   BufferView view{width, height, read_camera(reader, width, height), {}, {}};
-  const BlenderUnits units = units_of(reader);
+  const bool spots_fall = is_before_4(reader);
   for (const ViewReader& lamp : reader.children("lamps"))
-    view.lamps.push_back(read_lamp(lamp, units, &view.notes));
+    view.lamps.push_back(read_lamp(lamp, spots_fall, &view.notes));
   if (view.lamps.empty())
     reader.fail("lamps", "found none; expected at least one lamp: glints are its mirror images");
   return view;

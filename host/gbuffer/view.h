@@ -70,9 +70,9 @@ struct BufferView {
 ///
 /// Powers are those of Blender: a point or spot of P watts has an intensity of P / (4 pi) in all directions,
 /// an area one the radiance P / (pi area), a sun the irradiance P; times 2^exposure and the colour. An area
-/// lamp is a disk of the same area. Where the key `blender` names a version before 4 an area lamp has the
-/// radiance P / (4 area), and a spot falls with the cosine to its axis. Throws FileError for a file that
-/// cannot be read, that is no JSON, or that lacks or has wrong values; the message names them.
+/// lamp is a disk of the same area. Where the key `blender` names a version before 4 a spot falls with the
+/// cosine to its axis. Throws FileError for a file that cannot be read, that is no JSON, or that lacks or has
+/// wrong values; the message names them.
 BufferView read_view(const std::string& path);
 
 }  // namespace mica::host
