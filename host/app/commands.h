@@ -15,6 +15,7 @@ using Command = std::function<int()>;
 /// command.
 void add_render(CommandLine& app, Command* chosen, const MethodRegistry& methods);
 void add_join(CommandLine& app, Command* chosen, const MethodRegistry& methods);
+void add_glints(CommandLine& app, Command* chosen, const MethodRegistry& methods);
 void add_warm(CommandLine& app, Command* chosen, const MethodRegistry& methods);
 void add_status(CommandLine& app, Command* chosen, const MethodRegistry& methods);
 void add_check(CommandLine& app, Command* chosen, const MethodRegistry& methods);

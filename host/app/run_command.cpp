@@ -29,8 +29,8 @@ int parse_and_run(int argc, const char* const* argv, const MethodRegistry& metho
   app.version_flag("--version", about);
   app.require_subcommand();
   Command chosen;
-  for (const auto add : {add_render, add_join, add_warm, add_status, add_check, add_ndf, add_eval, add_map,
-                         add_devices, add_selftest, add_bench, add_manual})
+  for (const auto add : {add_render, add_glints, add_join, add_warm, add_status, add_check, add_ndf, add_eval,
+                         add_map, add_devices, add_selftest, add_bench, add_manual})
     add(app, &chosen, methods);
   if (const std::optional<int> code = app.parse(argc, argv)) return *code;
   const int done = chosen();

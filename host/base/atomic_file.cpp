@@ -88,6 +88,15 @@ class AtomicFile::Temporary {
     }
   }
 
+  void write_at(std::size_t offset, const char* bytes, std::size_t count) {
+    for (std::size_t done = 0; done < count;) {
+      const ssize_t written =
+          pwrite(descriptor_, bytes + done, count - done, static_cast<off_t>(offset + done));
+      if (written < 0 && errno != EINTR) fail(target_, "write", errno);
+      if (written > 0) done += static_cast<std::size_t>(written);
+    }
+  }
+
   void move_onto_target() {
     if (fsync(descriptor_) != 0) fail(target_, "write", errno);
     const int closed = close(std::exchange(descriptor_, -1));
@@ -118,6 +127,10 @@ AtomicFile::~AtomicFile() = default;
 
 void AtomicFile::append(const void* bytes, std::size_t count) {
   file_->write(static_cast<const char*>(bytes), count);
+}
+
+void AtomicFile::write_at(std::size_t offset, const void* bytes, std::size_t count) {
+  file_->write_at(offset, static_cast<const char*>(bytes), count);
 }
 
 void AtomicFile::finish() {

@@ -16,7 +16,9 @@ class AtomicFile {
 
   void append(const void* bytes, std::size_t count);
   void append(const std::string& bytes) { append(bytes.data(), bytes.size()); }
-  /// Makes what was appended durable, and the file. Call once.
+  /// Bytes at a place of the file, instead of those that are there. What is appended is not moved by them.
+  void write_at(std::size_t offset, const void* bytes, std::size_t count);
+  /// Makes what was written durable, and the file. Call once.
   void finish();
 
  private:

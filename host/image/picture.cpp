@@ -15,18 +15,12 @@
 #include <utility>
 
 #include "host/image/channel_choice.h"
+#include "host/image/file_errors.h"
 #include "host/image/image_header.h"
 #include "mica/error.h"
 
 namespace mica::host {
 namespace {
-
-/// What the reader said, on one line.
-std::string reason(std::string message) {
-  while (!message.empty() && (message.back() == '\n' || message.back() == ' ')) message.pop_back();
-  std::replace(message.begin(), message.end(), '\n', ' ');
-  return message.empty() ? "the file is damaged or truncated" : message;
-}
 
 std::vector<std::string> names_of(const OIIO::ImageSpec& spec, const std::vector<int>& indices) {
   std::vector<std::string> names;
@@ -359,20 +353,6 @@ class PictureReader {
   OIIO::ImageSpec spec_;  // of the chosen part
   std::array<double, 3> exposure_{1, 1, 1};
 };
-
-/// Errors of the libraries below become ours.
-template <class Function>
-auto with_file_errors(const std::string& path, const Function& function) {
-  try {
-    return function();
-  } catch (const Error&) {
-    throw;
-  } catch (const std::bad_alloc&) {  // not the file's fault
-    throw;
-  } catch (const std::exception& error) {
-    throw FileError(path + ": cannot read: " + reason(error.what()));
-  }
-}
 
 }  // namespace
 

@@ -74,6 +74,10 @@ class JobError : public UsageError {
   std::vector<JobIssue> issues_;
 };
 
+/// What a job is read for: a picture of its own, or a layer of glints over the picture of another renderer,
+/// which brings camera, lights and shapes; then those that the job has are left out, and so is its image.
+enum class JobUse { picture, layer };
+
 /// Reads and validates a job.
 ///
 /// @param path TOML, at most 1 MiB. File names in it are relative to its folder.
@@ -87,6 +91,7 @@ class JobError : public UsageError {
 /// @param methods that materials may name.
 /// @param max_picture_bytes that reading one of its images may take; 0: half of the machine's memory.
 Job load_job(const std::string& path, const std::vector<std::string>& overrides,
-             const MethodRegistry& methods = MethodRegistry::builtin(), std::uint64_t max_picture_bytes = 0);
+             const MethodRegistry& methods = MethodRegistry::builtin(), std::uint64_t max_picture_bytes = 0,
+             JobUse use = JobUse::picture);
 
 }  // namespace mica::host

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <xxhash.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <filesystem>
 #include <fstream>
@@ -94,12 +95,35 @@ void give_tolerance(const Job& job, MaterialDescription* material) {
   material->settings = std::move(settings);
 }
 
-void read_root(TableReader& table, Job& job) {
+/// Tables that another renderer stands for.
+void leave_out(TableReader& table) {
+  const auto any = [](TableReader& left) { left.accept_any_key(); };
+  for (const char* key : {"image", "frames", "camera", "background"}) table.read_table(key, any);
+  for (const char* key : {"shape", "light"})
+    if (table.has(key)) table.read_table_array(key, any);
+}
+
+void read_materials_of_layer(TableReader& table, Job& job) {
+  job.scene.materials = read_materials(table, job.surfaces, job.methods);
+  const auto has_id = [](const MaterialDescription& material) { return material.id.has_value(); };
+  if (!std::any_of(job.scene.materials.begin(), job.scene.materials.end(), has_id))
+    table.report("material",
+                 "found no material with an id; expected `id = N`, the number that pixels of the "
+                 "G-buffer have where it is");
+}
+
+void read_root(TableReader& table, Job& job, JobUse use) {
   table.read("seed", job.seed);
-  table.read_table("image", [&](TableReader& image) { job.image = read_image(image); });
-  table.read_table("frames", [&](TableReader& frames) { job.frames = read_frames(frames); });
-  job.surfaces = read_surfaces(table);
-  job.scene = read_scene(table, job.surfaces, job.methods);
+  if (use == JobUse::layer) {
+    leave_out(table);
+    job.surfaces = read_surfaces(table);
+    read_materials_of_layer(table, job);
+  } else {
+    table.read_table("image", [&](TableReader& image) { job.image = read_image(image); });
+    table.read_table("frames", [&](TableReader& frames) { job.frames = read_frames(frames); });
+    job.surfaces = read_surfaces(table);
+    job.scene = read_scene(table, job.surfaces, job.methods);
+  }
   table.read_table("accuracy", [&](TableReader& accuracy) {
     accuracy.read("tolerance", job.accuracy.tolerance, closed(5e-4, 0.5));
   });
@@ -113,12 +137,12 @@ void read_root(TableReader& table, Job& job) {
 }  // namespace
 
 Job load_job(const std::string& path, const std::vector<std::string>& overrides,
-             const MethodRegistry& methods, std::uint64_t max_picture_bytes) {
-  return read_job(read_text(path), path, overrides, methods, max_picture_bytes);
+             const MethodRegistry& methods, std::uint64_t max_picture_bytes, JobUse use) {
+  return read_job(read_text(path), path, overrides, methods, max_picture_bytes, use);
 }
 
 Job read_job(const std::string& text, const std::string& path, const std::vector<std::string>& overrides,
-             const MethodRegistry& methods, std::uint64_t max_picture_bytes) {
+             const MethodRegistry& methods, std::uint64_t max_picture_bytes, JobUse use) {
   Issues issues(path);
   Job job;
   job.path = path;
@@ -130,7 +154,7 @@ Job read_job(const std::string& text, const std::string& path, const std::vector
   for (const std::string& item : overrides) apply_override(root, item, issues);
   if (parsed) {
     ReadContext context{issues, std::filesystem::path(path).parent_path(), max_picture_bytes};
-    TableReader::read_root(root, context, [&](TableReader& table) { read_root(table, job); });
+    TableReader::read_root(root, context, [&](TableReader& table) { read_root(table, job, use); });
   }
   issues.throw_if_any();
   return job;

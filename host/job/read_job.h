@@ -13,7 +13,8 @@ constexpr Interval kCoordinate = closed(-1e8, 1e8), kExtent = open_low(0, 1e6);
 /// The job that `text` describes. @param path names it in messages, and its folder is where file names start.
 /// @param max_picture_bytes see PictureChoice.
 Job read_job(const std::string& text, const std::string& path, const std::vector<std::string>& overrides,
-             const MethodRegistry& methods = MethodRegistry::builtin(), std::uint64_t max_picture_bytes = 0);
+             const MethodRegistry& methods = MethodRegistry::builtin(), std::uint64_t max_picture_bytes = 0,
+             JobUse use = JobUse::picture);
 
 // What each table of a job means. Values that are wrong are reported to the reader's issues, and the results
 // then are not to be used.

@@ -10,6 +10,7 @@ namespace mica::host {
 namespace {
 
 const Interval kReflectance = closed(0, 1);
+constexpr double kLargestId = 1 << 24;  // that a float tells from its neighbours
 
 Fresnel read_conductor(TableReader& specular) {
   ConductorFresnel conductor;
@@ -114,6 +115,18 @@ void read_surface(TableReader& table, MaterialDescription& material,
   table.read("roughness", material.roughness, closed(1e-4, 1));
 }
 
+void read_id(TableReader& table, MaterialDescription& material,
+             const std::vector<MaterialDescription>& others) {
+  int id = 0;
+  table.read("id", id, closed(1, kLargestId));
+  if (id == 0) return;
+  material.id = id;
+  for (const MaterialDescription& other : others)
+    if (other.id == id)
+      table.report("id", fmt::format("found {}, which material {} has; expected one of its own", id,
+                                     in_quotes(other.name)));
+}
+
 }  // namespace
 
 std::vector<MaterialDescription> read_materials(TableReader& job,
@@ -141,6 +154,7 @@ std::vector<MaterialDescription> read_materials(TableReader& job,
           fmt::format("found \"kept\" beside ndf {}, whose BRDF answers for its own energy; expected "
                       "a density of normals, as triangles",
                       in_quotes(material.ndf)));
+    read_id(table, material, materials);
     table.read_table("coat", [&](TableReader& coat) { material.coat = read_coat(coat); });
     materials.push_back(std::move(material));
   });

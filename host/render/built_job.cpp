@@ -57,10 +57,13 @@ Eigen::Matrix2d normal_change(const Surface& surface) {
 BuiltJob::BuiltJob(const Job& job, const Plan& plan, Device& device)
     : BuiltJob(job, plan, device, job.frames.first) {}
 
-BuiltJob::BuiltJob(const Job& job, const Plan& plan, Device& device, int frame)
+BuiltJob::BuiltJob(const Job& job, const Plan& plan, Device& device, int frame, TraceRows trace)
     : job_(job),
       plan_(plan),
       device_(device),
+      trace_(trace ? std::move(trace)
+                   : [](const Scene& scene, int first_row,
+                        int row_count) { return scene.trace(first_row, row_count); }),
       frame_(frame),
       inputs_(hash_of_inputs(job)),
       surface_findings_(plan.evaluators.size()),
@@ -117,7 +120,8 @@ void BuiltJob::calibrate(std::size_t n, Evaluator* evaluator) {
     const Scene scene = scene_at(frame);
     const double shift = std::fmod(0.5 + kGoldenRatio * view, 1.0);  // other rows in every view
     for (int row = 0; row < rows; ++row)
-      for (const GlintQuery& glint : scene.trace(static_cast<int>((row + shift) * height / rows), 1).queries)
+      for (const GlintQuery& glint :
+           trace_(scene, static_cast<int>((row + shift) * height / rows), 1).queries)
         if (plan_.evaluator_of_material[glint.material] == static_cast<int>(n))
           queries.push_back(glint.query);
   }

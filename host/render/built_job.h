@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -16,13 +17,16 @@
 
 namespace mica::host {
 
+/// Rows of a picture; by default those that the scene's camera sees, `scene.trace(first_row, row_count)`.
+using TraceRows = std::function<TracedRows(const Scene& scene, int first_row, int row_count)>;
+
 /// Everything that a plan names, built: surfaces, scene, and evaluators on the device; at one frame.
 class BuiltJob {
  public:
   /// At the job's first frame, or another of its frames. Job, plan and device must outlive it. Throws
   /// mica::Error.
   BuiltJob(const Job& job, const Plan& plan, Device& device);
-  BuiltJob(const Job& job, const Plan& plan, Device& device, int frame);
+  BuiltJob(const Job& job, const Plan& plan, Device& device, int frame, TraceRows trace = {});
 
   /// Goes on to another frame: camera and lights move, surfaces that change are made again, and nothing else.
   void go_to(int frame);
@@ -31,6 +35,7 @@ class BuiltJob {
   const Job& job() const { return job_; }
   const Plan& plan() const { return plan_; }
   const Scene& scene() const { return scene_; }
+  TracedRows trace(int first_row, int row_count) const { return trace_(scene_, first_row, row_count); }
   /// By PlannedEvaluator; only one that asks for densities.
   Evaluator& evaluator(std::size_t n) const { return *evaluators_[n]; }
   std::vector<Evaluator*> evaluators() const;  ///< likewise; null for the others
@@ -75,6 +80,7 @@ class BuiltJob {
   const Job& job_;
   const Plan& plan_;
   Device& device_;
+  TraceRows trace_;
   int frame_;
   double surface_seconds_ = 0, scene_seconds_ = 0, build_seconds_ = 0;
   std::string inputs_;

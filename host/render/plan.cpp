@@ -107,6 +107,19 @@ std::vector<std::string> missing_densities(const Job& job, const Plan& plan) {
   return warnings;
 }
 
+/// Of the shapes; of a layer, which has none, those that pixels may name.
+std::set<std::string> used_materials(const SceneDescription& scene) {
+  std::set<std::string> used;
+  for (const ShapeDescription& shape : scene.shapes) {
+    used.insert(shape.material);
+    for (const PartMaterial& part : shape.parts) used.insert(part.material);
+  }
+  if (scene.shapes.empty())
+    for (const MaterialDescription& material : scene.materials)
+      if (material.id) used.insert(material.name);
+  return used;
+}
+
 }  // namespace
 
 bool can_audit_pixels(const Plan& plan) {
@@ -126,11 +139,7 @@ Plan make_plan(const Job& job) {
   Plan plan;
   plan.gathers_light = !job.scene.environments.empty() || job.image.max_bounces > 1;
   if (plan.gathers_light) plan.samples = job.image.samples, plan.max_bounces = job.image.max_bounces;
-  std::set<std::string> used;
-  for (const ShapeDescription& shape : job.scene.shapes) {
-    used.insert(shape.material);
-    for (const PartMaterial& part : shape.parts) used.insert(part.material);
-  }
+  const std::set<std::string> used = used_materials(job.scene);
   for (std::size_t n = 0; n < job.scene.materials.size(); ++n)
     plan.evaluator_of_material.push_back(
         used.count(job.scene.materials[n].name) ? evaluator_for(job, static_cast<int>(n), &plan) : -1);

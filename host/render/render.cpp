@@ -41,21 +41,19 @@ std::vector<float> estimate_errors(const BuiltJob& built, const TracedRows& rows
 }
 
 /// Traces and evaluates rows; the device evaluates one block while the host traces the next.
-void render_rows(const BuiltJob& built, const RowRange& rows, const RenderProgress& progress,
-                 AuditSampler* sampler, RenderResult* result) {
+void evaluate_rows(const BuiltJob& built, const RowRange& rows, const RenderProgress& progress,
+                   const TakeRows& take, AuditSampler* sampler, RenderResult* result) {
   const Stopwatch total;
-  const ImageSettings& image = built.job().image;
   const int rows_a_block = built.plan().rows_a_block;
   const std::vector<std::string>& channels = built.plan().channels;
   const bool wants_errors = std::find(channels.begin(), channels.end(), "error.Y") != channels.end();
-  Film film(image.width, rows.count, built.plan().channels, rows.first);
   const int end = rows.first + rows.count;
   std::optional<PendingBlock> in_flight;
   for (int row = rows.first; row < end || in_flight; row += rows_a_block) {
     std::optional<PendingBlock> next;
     if (row < end) {
       const Stopwatch tracing;
-      TracedRows traced = built.scene().trace(row, std::min(rows_a_block, end - row));
+      TracedRows traced = built.trace(row, std::min(rows_a_block, end - row));
       result->seconds.trace += tracing.seconds();
       const Stopwatch gathering;
       result->queries += add_lit_brdfs(built, &traced) + gather_light(built, &traced);
@@ -66,31 +64,15 @@ void render_rows(const BuiltJob& built, const RowRange& rows, const RenderProgre
       const Stopwatch waiting;
       const std::vector<float> densities = in_flight->wait();
       result->seconds.wait += waiting.seconds();
-      film.add(in_flight->rows(), densities,
-               wants_errors ? estimate_errors(built, in_flight->rows(), densities) : std::vector<float>());
-      offer(in_flight->rows(), densities, built.plan(), image.width, sampler);
+      take(in_flight->rows(), densities,
+           wants_errors ? estimate_errors(built, in_flight->rows(), densities) : std::vector<float>());
+      offer(in_flight->rows(), densities, built.plan(), built.job().image.width, sampler);
       result->queries += densities.size();
       progress(in_flight->rows().first_row + in_flight->rows().row_count - rows.first, rows.count);
     }
     in_flight = std::move(next);
   }
-  result->image = film.take();
-  result->image.whole_height = image.height;
-  result->repairs = film.repairs();
   result->seconds.render = total.seconds();
-}
-
-std::vector<std::string> describe_repairs(int frame, const RenderResult& result) {
-  std::vector<std::string> lines;
-  const auto say = [&](std::size_t count, const char* what) {
-    if (count > 0) lines.push_back(fmt::format("frame {}: {} {}", frame, count, what));
-  };
-  say(result.replaced_answers,
-      "answers of methods were not finite: in their place are the oracle's, or 0 of a BRDF");
-  say(result.repairs.not_finite,
-      "values of pixels or samples were not finite in single precision: left at 0");
-  say(result.repairs.negative, "pixels were negative: raised to 0");
-  return lines;
 }
 
 }  // namespace
@@ -110,8 +92,20 @@ std::string describe(const AuditResult& audit) {
                      audit.relative_l2, audit.percentile_99, audit.maximum);
 }
 
-RenderResult render_frame(BuiltJob& built, int frame, const DeviceInfo& device,
-                          const RenderProgress& progress, std::optional<RowRange> rows) {
+void tell_repairs(const FilmRepairs& repairs, RenderResult* result) {
+  result->repairs = repairs;
+  const auto say = [&](std::size_t count, const char* what) {
+    if (count > 0)
+      result->surface_warnings.push_back(fmt::format("frame {}: {} {}", result->frame, count, what));
+  };
+  say(result->replaced_answers,
+      "answers of methods were not finite: in their place are the oracle's, or 0 of a BRDF");
+  say(repairs.not_finite, "values of pixels or samples were not finite in single precision: left at 0");
+  say(repairs.negative, "pixels were negative: raised to 0");
+}
+
+RenderResult evaluate_frame(BuiltJob& built, int frame, const DeviceInfo& device,
+                            const RenderProgress& progress, const RowRange& rows, const TakeRows& take) {
   const Stopwatch total;
   const Job& job = built.job();
   RenderResult result;
@@ -126,13 +120,11 @@ RenderResult render_frame(BuiltJob& built, int frame, const DeviceInfo& device,
   const double device_seconds = built.device_seconds();
   const std::size_t replaced_answers = built.replaced_answers();
   AuditSampler sampler(job.seed, job.audit.samples);
-  render_rows(built, rows.value_or(RowRange{0, job.image.height}), progress, &sampler, &result);
+  evaluate_rows(built, rows, progress, take, &sampler, &result);
 
   const Stopwatch auditing;
   result.audited = audit(sampler.samples(), built.surfaces());
   result.audit = audit_result(result.audited);
-  result.audited_pixels = audit_pixels(built, result.image);
-  result.picture_audit = picture_audit(result.audited_pixels);
   result.seconds.audit = auditing.seconds();
   result.seconds.surfaces = built.surface_seconds();
   result.seconds.scene = built.scene_seconds();
@@ -143,13 +135,35 @@ RenderResult render_frame(BuiltJob& built, int frame, const DeviceInfo& device,
   result.precision_error = built.precision_error();
   result.surface_notes = built.notes();
   result.surface_warnings = built.warnings();
-  for (const std::string& line : describe_repairs(frame, result)) result.surface_warnings.push_back(line);
   result.image.metadata = picture_identity(job, frame, built.inputs());
   result.image.metadata["mica:device"] = device.name;
   if (result.audit.samples) result.image.metadata["mica:audit"] = describe(result.audit);
+  result.seconds.total = before + total.seconds();
+  return result;
+}
+
+RenderResult render_frame(BuiltJob& built, int frame, const DeviceInfo& device,
+                          const RenderProgress& progress, std::optional<RowRange> some_rows) {
+  const ImageSettings& image = built.job().image;
+  const RowRange rows = some_rows.value_or(RowRange{0, image.height});
+  Film film(image.width, rows.count, built.plan().channels, rows.first);
+  RenderResult result =
+      evaluate_frame(built, frame, device, progress, rows,
+                     [&](const TracedRows& block, const std::vector<float>& densities,
+                         const std::vector<float>& errors) { film.add(block, densities, errors); });
+  std::map<std::string, std::string> metadata = std::move(result.image.metadata);
+  result.image = film.take();
+  result.image.whole_height = image.height;
+  tell_repairs(film.repairs(), &result);
+
+  const Stopwatch auditing;
+  result.audited_pixels = audit_pixels(built, result.image);
+  result.picture_audit = picture_audit(result.audited_pixels);
+  result.image.metadata = std::move(metadata);
   if (result.picture_audit.pixels)
     result.image.metadata["mica:audit.picture"] = describe(result.picture_audit);
-  result.seconds.total = before + total.seconds();
+  result.seconds.audit += auditing.seconds();
+  result.seconds.total += auditing.seconds();
   return result;
 }
 

@@ -59,6 +59,19 @@ std::string describe(const AuditResult& audit);
 /// Called after every block of rows with the rows done; may throw to stop.
 using RenderProgress = std::function<void(int rows_done, int rows)>;
 
+/// What is known of a block of rows once they are evaluated; densities and errors in the order of their
+/// queries, the latter empty unless the plan has a channel for them.
+using TakeRows = std::function<void(const TracedRows& rows, const std::vector<float>& densities,
+                                    const std::vector<float>& errors)>;
+
+/// Traces and evaluates rows of one frame, and hands them out from the top. As render_frame; of the result
+/// image, repairs and pixels' audit are the caller's.
+RenderResult evaluate_frame(BuiltJob& built, int frame, const DeviceInfo& device,
+                            const RenderProgress& progress, const RowRange& rows, const TakeRows& take);
+
+/// Says in the result's warnings what answers and `repairs` were no numbers.
+void tell_repairs(const FilmRepairs& repairs, RenderResult* result);
+
 /// Renders one frame of a job by its plan: traces blocks of rows on the host while the device evaluates the
 /// block before. The image depends on the job and the frame alone, bit for bit. Throws mica::Error.
 /// @param built at the job's first frame or at one that was rendered before. The first frame's seconds are

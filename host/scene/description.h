@@ -68,6 +68,7 @@ struct MaterialDescription {
   MultipleScattering multiple_scattering = MultipleScattering::lost;
   std::optional<CoatDescription> coat = {};
   std::optional<GlintsDescription> glints = {};  ///< for methods that have no map
+  std::optional<int> id = {};                    ///< its number in the buffers of another renderer, above 0
 };
 
 struct PlaneShape {  ///< square of the plane z = height, uv over its sides
@@ -126,6 +127,7 @@ struct PointLight {
 struct DirectionalLight {
   Eigen::Vector3d direction{0, 0, -1};  ///< in which the light travels
   Color irradiance{3, 3, 3};            ///< W/m^2 on a surface that faces it
+  double angular_radius = 0;            ///< radians, of the disk that shines; it widens lobes alone
 };
 struct SphereLight {  ///< shines alike in all directions
   Eigen::Vector3d position{0, 0, 4};

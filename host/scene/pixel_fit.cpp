@@ -12,54 +12,10 @@
 namespace mica::host {
 namespace {
 
-constexpr std::size_t kRays = PixelFit::kRays;
-using Values = Eigen::Matrix<double, kRays, 1>;
+using Values = FitStencil::Values;
 
 constexpr double kMaxCondition = 50;  // of uv over the pixel; footprints of more than 100 are shortened
 constexpr double kWholePeriod = 0.5;  // sigma in periods from which on place says nothing of the normal
-
-const Values& ray_weights() {
-  static const Values weights = [] {
-    Values made;
-    for (std::size_t n = 0; n < kRays; ++n)
-      made[static_cast<Eigen::Index>(n)] = std::exp(-2 * PixelFit::offsets()[n].squaredNorm());
-    return Values(made / made.sum());
-  }();
-  return weights;
-}
-
-using Basis = Eigen::Matrix<double, kRays, 6>;
-
-const Basis& basis() {
-  static const Basis made = [] {
-    Basis rows;
-    for (std::size_t n = 0; n < kRays; ++n) {
-      const double x = PixelFit::offsets()[n].x(), y = PixelFit::offsets()[n].y();
-      rows.row(static_cast<Eigen::Index>(n)) << 1, x, y, x * x / 2, x * y, y * y / 2;
-    }
-    return rows;
-  }();
-  return made;
-}
-
-/// By least squares, with weights of a Gaussian of half a pixel.
-Quadratic fit(const Values& values, Values* residual = nullptr) {
-  static const Eigen::MatrixXd solve = [] {
-    const Eigen::MatrixXd weighted = basis().transpose() * ray_weights().asDiagonal();
-    return solve_normal_equations(weighted.lazyProduct(basis()), weighted);
-  }();
-  const Eigen::Matrix<double, 6, 1> c = solve.lazyProduct(values);
-  if (residual) *residual = values - basis().lazyProduct(c);
-  Quadratic result;
-  result.value = c[0];
-  result.slope = {c[1], c[2]};
-  result.turn << c[3], c[4], c[4], c[5];
-  return result;
-}
-
-double weighted(const Values& a, const Values& b) {
-  return (ray_weights().array() * a.array() * b.array()).sum();
-}
 
 }  // namespace
 
@@ -80,47 +36,86 @@ Probe probe_of(const SeenPoint& point) {
   return probe;
 }
 
-const std::array<Eigen::Vector2d, PixelFit::kRays>& PixelFit::offsets() {
-  static const std::array<Eigen::Vector2d, kRays> all = {{{0, 0},
-                                                          {-.5, -.5},
-                                                          {.5, -.5},
-                                                          {-.5, .5},
-                                                          {.5, .5},
-                                                          {-1, -1},
-                                                          {0, -1},
-                                                          {1, -1},
-                                                          {-1, 0},
-                                                          {1, 0},
-                                                          {-1, 1},
-                                                          {0, 1},
-                                                          {1, 1}}};
-  return all;
+FitStencil::FitStencil(std::vector<Eigen::Vector2d> offsets)
+    : offsets_(std::move(offsets)), weights_(zeros()), basis_(static_cast<Eigen::Index>(size()), 6) {
+  for (std::size_t n = 0; n < size(); ++n) {
+    const auto row = static_cast<Eigen::Index>(n);
+    const double x = offsets_[n].x(), y = offsets_[n].y();
+    weights_[row] = std::exp(-2 * offsets_[n].squaredNorm());
+    basis_.row(row) << 1, x, y, x * x / 2, x * y, y * y / 2;
+  }
+  weights_ /= weights_.sum();
+  const Eigen::MatrixXd basis = basis_, weighted = basis.transpose() * weights_.asDiagonal();
+  solve_ = solve_normal_equations(weighted.lazyProduct(basis), weighted);
 }
 
-PixelFit::PixelFit(std::array<const Probe*, kRays> probes) : probes_(probes) {
-  Values u, v, u_residual, v_residual;
-  const Probe& middle = *probes_[0];
-  for (std::size_t n = 0; n < kRays; ++n) {
-    // The map repeats: of all that a ray may mean the one nearest to where the middle's uv lead.
-    const Eigen::Vector2d expected = middle.duv * offsets()[n];
-    Eigen::Vector2d step = probes[n]->uv - middle.uv;
-    step -= (step - expected).array().round().matrix();
-    u[static_cast<Eigen::Index>(n)] = step.x(), v[static_cast<Eigen::Index>(n)] = step.y();
+const FitStencil& FitStencil::centers_and_corners() {
+  static const FitStencil stencil({{0, 0},
+                                   {-.5, -.5},
+                                   {.5, -.5},
+                                   {-.5, .5},
+                                   {.5, .5},
+                                   {-1, -1},
+                                   {0, -1},
+                                   {1, -1},
+                                   {-1, 0},
+                                   {1, 0},
+                                   {-1, 1},
+                                   {0, 1},
+                                   {1, 1}});
+  return stencil;
+}
+
+const FitStencil& FitStencil::centers() {
+  static const FitStencil stencil(
+      {{0, 0}, {-1, -1}, {0, -1}, {1, -1}, {-1, 0}, {1, 0}, {-1, 1}, {0, 1}, {1, 1}});
+  return stencil;
+}
+
+Quadratic FitStencil::fit(const Values& values, Values* residual) const {
+  const Eigen::Matrix<double, 6, 1> c = solve_.lazyProduct(values);
+  if (residual) *residual = values - basis_.lazyProduct(c);
+  Quadratic result;
+  result.value = c[0];
+  result.slope = {c[1], c[2]};
+  result.turn << c[3], c[4], c[4], c[5];
+  return result;
+}
+
+double FitStencil::mean_product(const Values& a, const Values& b) const {
+  return (weights_.array() * a.array() * b.array()).sum();
+}
+
+UvSteps repeating_steps(const FitStencil& stencil, const ProbesOfFit& probes) {
+  UvSteps steps;
+  const Probe& middle = *probes[0];
+  for (std::size_t n = 0; n < stencil.size(); ++n) {
+    const Eigen::Vector2d expected = middle.duv * stencil.offsets()[n];
+    steps[n] = probes[n]->uv - middle.uv;
+    steps[n] -= (steps[n] - expected).array().round().matrix();
   }
-  u_ = fit(u, &u_residual), v_ = fit(v, &v_residual);
-  uv_residual2_uu_ = weighted(u_residual, u_residual);
-  uv_residual2_uv_ = weighted(u_residual, v_residual);
-  uv_residual2_vv_ = weighted(v_residual, v_residual);
+  return steps;
+}
+
+PixelFit::PixelFit(const FitStencil& stencil, const ProbesOfFit& probes, const UvSteps& steps)
+    : stencil_(stencil), probes_(probes) {
+  Values u = stencil.zeros(), v = u, u_residual, v_residual;
+  for (std::size_t n = 0; n < stencil.size(); ++n)
+    u[static_cast<Eigen::Index>(n)] = steps[n].x(), v[static_cast<Eigen::Index>(n)] = steps[n].y();
+  u_ = stencil.fit(u, &u_residual), v_ = stencil.fit(v, &v_residual);
+  uv_residual2_uu_ = stencil.mean_product(u_residual, u_residual);
+  uv_residual2_uv_ = stencil.mean_product(u_residual, v_residual);
+  uv_residual2_vv_ = stencil.mean_product(v_residual, v_residual);
 }
 
 Color PixelFit::radiance(const FilterSum& filter) const {
   Color mean = Color::Zero();
   const Eigen::Matrix2d cov = filter.sigma_pixels * filter.sigma_pixels * Eigen::Matrix2d::Identity();
   for (int channel = 0; channel < 3; ++channel) {
-    Values values;
-    for (std::size_t n = 0; n < kRays; ++n)
+    Values values = stencil_.zeros();
+    for (std::size_t n = 0; n < stencil_.size(); ++n)
       values[static_cast<Eigen::Index>(n)] = probes_[n]->radiance[channel];
-    const Quadratic fitted = fit(values);
+    const Quadratic fitted = stencil_.fit(values);
     double sum = 0;
     for (std::size_t i = 0; i < filter.weights.size(); ++i)
       for (std::size_t j = 0; j < filter.weights.size(); ++j)
@@ -143,31 +138,32 @@ Footprint PixelFit::footprint(const FilterSum& filter) const {
 }
 
 bool PixelFit::sees(std::size_t lamp) const {
-  return std::any_of(probes_.begin(), probes_.end(),
+  return std::any_of(probes_.begin(), probes_.begin() + static_cast<std::ptrdiff_t>(stencil_.size()),
                      [&](const Probe* probe) { return probe->lamps[lamp].visible > 0; });
 }
 
 double PixelFit::penumbra_residual(std::size_t lamp) const {
-  Values visible, residual;
-  for (std::size_t n = 0; n < kRays; ++n)
+  Values visible = stencil_.zeros(), residual;
+  for (std::size_t n = 0; n < stencil_.size(); ++n)
     visible[static_cast<Eigen::Index>(n)] = probes_[n]->lamps[lamp].visible;
-  fit(visible, &residual);
-  return std::sqrt(weighted(residual, residual));
+  stencil_.fit(visible, &residual);
+  return std::sqrt(stencil_.mean_product(residual, residual));
 }
 
 PixelFit::LampFit PixelFit::fit_lamp(std::size_t lamp) const {
-  Values s, t, red, green, blue, s_residual, t_residual;
-  for (std::size_t n = 0; n < kRays; ++n) {
+  Values s = stencil_.zeros(), t = s, red = s, green = s, blue = s, s_residual, t_residual;
+  for (std::size_t n = 0; n < stencil_.size(); ++n) {
     const Probe::Lamp& seen = probes_[n]->lamps[lamp];
     const auto k = static_cast<Eigen::Index>(n);
     s[k] = seen.half_vector.x(), t[k] = seen.half_vector.y();
     red[k] = seen.weight.x(), green[k] = seen.weight.y(), blue[k] = seen.weight.z();
   }
   LampFit fitted;
-  fitted.s = fit(s, &s_residual), fitted.t = fit(t, &t_residual);
-  fitted.red = fit(red), fitted.green = fit(green), fitted.blue = fit(blue);
+  fitted.s = stencil_.fit(s, &s_residual), fitted.t = stencil_.fit(t, &t_residual);
+  fitted.red = stencil_.fit(red), fitted.green = stencil_.fit(green), fitted.blue = stencil_.fit(blue);
   fitted.roughness = probes_[0]->lamps[lamp].roughness;
-  fitted.residual2 = weighted(s_residual, s_residual) + weighted(t_residual, t_residual);
+  fitted.residual2 =
+      stencil_.mean_product(s_residual, s_residual) + stencil_.mean_product(t_residual, t_residual);
   return fitted;
 }
 
@@ -272,6 +268,7 @@ bool PixelFit::ask(std::size_t lamp, const FilterSum& filter, const Eigen::Matri
     const double square = 0.5 * second.trace();
     if (square <= limit2) {
       GlintQuery query;
+      query.light = static_cast<std::uint32_t>(lamp);
       if (!query_of(part, fitted, &query)) return false;
       asked.push_back(query);
       continue;

@@ -47,6 +47,35 @@ struct Quadratic {
   }
 };
 
+/// Where a pixel's fit looks, in pixels from the centre, which is the first of all places, and how it makes a
+/// quadratic of what it finds: by least squares with weights of a Gaussian of half a pixel.
+class FitStencil {
+ public:
+  static constexpr std::size_t kMost = 13;
+  using Values = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMost, 1>;
+
+  /// A pixel's centre and corners, and the centres of its eight neighbours.
+  static const FitStencil& centers_and_corners();
+  /// A pixel's centre and those of its eight neighbours, row by row.
+  static const FitStencil& centers();
+
+  std::size_t size() const { return offsets_.size(); }
+  const std::vector<Eigen::Vector2d>& offsets() const { return offsets_; }
+  Values zeros() const { return Values::Zero(static_cast<Eigen::Index>(size())); }
+  Quadratic fit(const Values& values, Values* residual = nullptr) const;
+  /// The weighted mean of a product.
+  double mean_product(const Values& a, const Values& b) const;
+
+ private:
+  using Basis = Eigen::Matrix<double, Eigen::Dynamic, 6, 0, kMost, 6>;
+  explicit FitStencil(std::vector<Eigen::Vector2d> offsets);
+
+  std::vector<Eigen::Vector2d> offsets_;
+  Values weights_;
+  Basis basis_;
+  Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, kMost> solve_;
+};
+
 /// How far one Gaussian may be from the place and the half vector that it stands for, in standard deviations
 /// of the lobe, in the mean square: of the normals that the map shows there.
 struct FitLimits {
@@ -54,18 +83,21 @@ struct FitLimits {
   int most_parts = 16;  ///< of a pixel and lamp
 };
 
-/// A pixel whose filter lies on one surface, by a least-squares fit of second order to thirteen rays: those
-/// at its centre and its corners, and at the centres of its eight neighbours. Of uv and the half vectors the
-/// first order goes into the queries; the second one, times the normals' change, says how far these are from
-/// the truth, and splits them where that is too far.
+/// What a pixel's fit knows, by place of its stencil.
+using ProbesOfFit = std::array<const Probe*, FitStencil::kMost>;
+using UvSteps = std::array<Eigen::Vector2d, FitStencil::kMost>;
+
+/// The change of uv from the centre to each place. The map repeats: of all that a place may mean the one
+/// nearest to where the centre's uv lead.
+UvSteps repeating_steps(const FitStencil& stencil, const ProbesOfFit& probes);
+
+/// A pixel whose filter lies on one surface, by a least-squares fit of second order to what its stencil
+/// finds. Of uv and the half vectors the first order goes into the queries; the second one, times the
+/// normals' change, says how far these are from the truth, and splits them where that is too far.
 class PixelFit {
  public:
-  static constexpr std::size_t kRays = 13;
-  /// Where the rays go, in pixels from the centre; the first one is the centre.
-  static const std::array<Eigen::Vector2d, kRays>& offsets();
-
-  /// @param probes on one surface, facing the eye, or all on none.
-  explicit PixelFit(std::array<const Probe*, kRays> probes);
+  /// @param stencil has to outlive it. @param probes on one surface, facing the eye, or all on none.
+  PixelFit(const FitStencil& stencil, const ProbesOfFit& probes, const UvSteps& steps);
 
   /// Mean over the filter of what needs no P-NDF.
   Color radiance(const FilterSum& filter) const;
@@ -99,7 +131,8 @@ class PixelFit {
                              const Eigen::Vector2d& log_weight_slope) const;
   bool query_of(const Gaussian& part, const LampFit& lamp, GlintQuery* query) const;
 
-  std::array<const Probe*, kRays> probes_;
+  const FitStencil& stencil_;
+  ProbesOfFit probes_;
   Quadratic u_, v_;
   double uv_residual2_uu_ = 0, uv_residual2_uv_ = 0, uv_residual2_vv_ = 0;
 };

@@ -93,10 +93,10 @@ bool PixelProbes::agree(int row, int column) const {
   });
 }
 
-std::array<const Probe*, PixelFit::kRays> PixelProbes::of_fit(int row, int column) const {
-  std::array<const Probe*, PixelFit::kRays> probes;
+ProbesOfFit PixelProbes::of_fit(int row, int column) const {
+  ProbesOfFit probes;
   for (std::size_t n = 0; n < probes.size(); ++n) {
-    const Eigen::Vector2d& offset = PixelFit::offsets()[n];
+    const Eigen::Vector2d& offset = FitStencil::centers_and_corners().offsets()[n];
     probes[n] = &at(2 * row + 1 + static_cast<int>(2 * offset.y()),
                     2 * column + 1 + static_cast<int>(2 * offset.x()));
   }

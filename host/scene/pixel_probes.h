@@ -26,7 +26,8 @@ class PixelProbes {
   /// none of them, and shadows have no edge: a lamp without extent is seen by all or none.
   bool agree(int row, int column) const;
 
-  std::array<const Probe*, PixelFit::kRays> of_fit(int row, int column) const;
+  /// By place of FitStencil::centers_and_corners().
+  ProbesOfFit of_fit(int row, int column) const;
 
  private:
   // Places are in half pixels: those of centres are odd, those of corners even.

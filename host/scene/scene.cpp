@@ -105,6 +105,12 @@ Scene::~Scene() = default;
 Scene::Scene(Scene&&) noexcept = default;
 Scene& Scene::operator=(Scene&&) noexcept = default;
 
+const Viewer& Scene::viewer() const {
+  return implementation_->viewer;
+}
+const PixelSettings& Scene::pixels() const {
+  return implementation_->pixels;
+}
 const Findings& Scene::findings() const {
   return implementation_->viewer.shared->findings;
 }

@@ -25,6 +25,7 @@ struct GlintQuery {
   std::uint32_t pixel = kNone;   ///< row * width + column, from the first traced row; kNone lies outside
   std::uint32_t sample = kNone;  ///< of the lattice; kNone: all of the pixel's
   std::uint32_t material = 0;    ///< index into SceneDescription::materials
+  std::uint32_t light = 0;       ///< index into Scene::lights
   Eigen::Vector3f weight = Eigen::Vector3f::Zero();  ///< radiance into the pixel or sample per unit of D
   GlintPoint glints;                                 ///< for the evaluator "grid"; others do not mind it
 };
@@ -49,6 +50,7 @@ struct TracedRows {
   std::vector<Eigen::Vector3f> footprint;  ///< cuu, cuv, cvv in uv^2
   std::vector<Eigen::Vector3f> normal;     ///< geometric normal towards the camera, world space
   std::vector<std::uint16_t> query_count;
+  std::vector<float> coverage;  ///< share of shapes in it; empty where nobody asked
 };
 
 /// Adds to `radiance`, a pixel, what pixels that were not fitted see of `sample_radiance`.
@@ -70,6 +72,8 @@ struct LightGathering {
   bool points = false;                ///< trace fills TracedRows::points
   std::vector<bool> patch_materials;  ///< those whose lights go to TracedRows::lit instead of `queries`
 };
+
+struct Viewer;
 
 /// Shapes, lights and camera, ready to be traced. Immutable after construction; traced from any number of
 /// threads.
@@ -107,6 +111,8 @@ class Scene {
   /// @param pixels without fits; of any number of subpixels.
   TracedRows trace_pixel(int row, int column, const PixelSettings& pixels) const;
 
+  const Viewer& viewer() const;
+  const PixelSettings& pixels() const;
   /// What was assumed and repaired in the images of backgrounds and environments.
   const Findings& findings() const;
   const Geometry& geometry() const;

@@ -23,7 +23,9 @@ struct Illuminate {
     return {to_light / distance, distance, light.intensity / distance2};
   }
   Illumination operator()(const DirectionalLight& light) const {
-    return {-light.direction.normalized(), std::numeric_limits<double>::infinity(), light.irradiance};
+    const double sine = std::sin(light.angular_radius);
+    return {-light.direction.normalized(), std::numeric_limits<double>::infinity(), light.irradiance,
+            sine * sine / 4};
   }
   Illumination operator()(const SphereLight& light) const {
     Illumination seen = (*this)(PointLight{light.position, light.intensity});

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/scene/block_rows.h"
 #include "host/scene/footprint.h"
 #include "host/scene/light_samples.h"
 #include "host/scene/pixel_probes.h"
@@ -18,55 +19,6 @@ namespace {
 /// by 0.06 where half of it is seen; an edge of a shadow less than 0.4 pixels from the centre is by 0.14 to
 /// 0.23.
 constexpr double kMostPenumbraResidual = 0.12;
-
-/// Sums of one pixel's AOVs over the samples that hit a shape.
-class PixelMeans {
- public:
-  void add(const Footprint& footprint, const Eigen::Vector3d& normal) {
-    if (count_ == 0) first_uv_ = footprint.mean_uv;
-    const Eigen::Vector2d step = footprint.mean_uv - first_uv_;
-    uv_offset_ += step - step.array().round().matrix();  // the short way across the wrap
-    covariance_ += Eigen::Vector3d(footprint.cov_uv(0, 0), footprint.cov_uv(0, 1), footprint.cov_uv(1, 1));
-    normal_ += normal;
-    ++count_;
-  }
-  void write(TracedRows* rows, std::size_t pixel) const {
-    if (count_ == 0) return;
-    const Eigen::Vector2f uv = wrap(first_uv_ + uv_offset_ / count_).cast<float>();
-    rows->uv[pixel] = (uv.array() < 1).select(uv, 0);
-    rows->footprint[pixel] = (covariance_ / count_).cast<float>();
-    rows->normal[pixel] = (normal_ / count_).cast<float>();
-  }
-
- private:
-  int count_ = 0;
-  Eigen::Vector2d first_uv_{0, 0}, uv_offset_{0, 0};
-  Eigen::Vector3d covariance_{0, 0, 0}, normal_{0, 0, 0};
-};
-
-TracedRows empty_rows(int first_row, int row_count, int width) {
-  TracedRows rows;
-  rows.first_row = first_row, rows.row_count = row_count;
-  const std::size_t pixels = static_cast<std::size_t>(row_count) * static_cast<std::size_t>(width);
-  rows.fitted.assign(pixels, 0);
-  rows.radiance.assign(pixels, Eigen::Vector3f::Zero());
-  rows.uv.assign(pixels, Eigen::Vector2f::Zero());
-  rows.footprint.assign(pixels, Eigen::Vector3f::Zero());
-  rows.normal.assign(pixels, Eigen::Vector3f::Zero());
-  rows.query_count.assign(pixels, 0);
-  return rows;
-}
-
-template <typename Item>
-void join(std::vector<RowQueries>* rows, std::vector<Item> RowQueries::*part, std::vector<Item>* all) {
-  std::size_t total = 0;
-  for (const RowQueries& row : *rows) total += (row.*part).size();
-  all->reserve(total);
-  for (RowQueries& row : *rows) {
-    all->insert(all->end(), (row.*part).begin(), (row.*part).end());
-    std::vector<Item>().swap(row.*part);
-  }
-}
 
 /// What a fitted pixel shows; unset: it needs samples.
 struct FittedPixel {
@@ -105,9 +57,7 @@ class BlockTracer {
       if (row >= 0 && row < rows_.row_count) write_fits(row, here);
       sample_row(row, here);
     });
-    join(&queries, &RowQueries::glints, &rows_.queries);
-    join(&queries, &RowQueries::points, &rows_.points);
-    join(&queries, &RowQueries::lit, &rows_.lit);
+    join_queries(&queries, &rows_);
     return std::move(rows_);
   }
 
@@ -170,7 +120,9 @@ std::optional<FittedPixel> BlockTracer::fit(int row, int column) const {
   const bool hit = middle.surface != Probe::kNothing;
   if (hit && (!middle.faces_eye || !pixels_.takes_first_order[middle.material])) return std::nullopt;
   if (!probes_->agree(row, column)) return std::nullopt;
-  const PixelFit fitted(probes_->of_fit(row, column));
+  const FitStencil& stencil = FitStencil::centers_and_corners();
+  const ProbesOfFit probes = probes_->of_fit(row, column);
+  const PixelFit fitted(stencil, probes, repeating_steps(stencil, probes));
   FittedPixel pixel;
   pixel.radiance = fitted.radiance(few_);
   if (!hit) return pixel;
@@ -249,7 +201,9 @@ void BlockTracer::sample_cell(int row, int column, std::uint32_t first_sample, R
                                   {light_sample(key(row, column), k, n)}));
   }
   const std::vector<std::vector<Eigen::Matrix2d>> turns = turns_of(points);
-  const bool owned = row >= 0 && row < rows_.row_count && column >= 0 && column < width_;
+  // A pixel that was fitted has queries of its own: samples in it are there for its neighbours.
+  const bool owned =
+      row >= 0 && row < rows_.row_count && column >= 0 && column < width_ && !has_fit(row, column);
   const auto pixel = owned ? static_cast<std::uint32_t>(row * width_ + column) : GlintQuery::kNone;
   const std::size_t before = queries->size();
   PixelMeans means;
@@ -263,7 +217,7 @@ void BlockTracer::sample_cell(int row, int column, std::uint32_t first_sample, R
       viewer_.ask(point, lattice_filter_.sigma_pixels,
                   {pixel, sample, key(row, column), static_cast<std::uint32_t>(k)}, turns[k], queries);
   }
-  if (!owned || has_fit(row, column)) return;
+  if (!owned) return;
   means.write(&rows_, pixel);
   rows_.query_count[pixel] =
       static_cast<std::uint16_t>(std::min<std::size_t>(queries->size() - before, 65535));

@@ -17,6 +17,8 @@ StaticScene::StaticScene(const SceneDescription& description)
   for (const auto& parts : part_materials)
     for (const std::uint32_t n : parts)
       if (materials[n].glints && !glints[n]) glints[n].emplace(materials[n]);
+  for (std::size_t n = 0; n < materials.size() && description.shapes.empty(); ++n)
+    if (materials[n].glints && materials[n].id) glints[n].emplace(materials[n]);
 }
 
 SeenLamp Viewer::see(const LightDescription& light, const SeenPoint& point,
@@ -61,12 +63,15 @@ SeenPoint Viewer::look(double x, double y, const std::vector<Eigen::Vector2d>& l
   point.uv = hit.uv.cwiseProduct(repeat);
   point.duv = repeat.asDiagonal() * uv_differentials(point.ray, hit);
   point.faces_eye = point.frame.face_normal.dot(point.to_eye) >= kMinCosine;
-  if (!point.faces_eye) return point;
-  for (const LightDescription& light : lights) {
-    const SeenLamp& lamp = point.lamps.emplace_back(see(light, point, light_samples));
-    if (lamp.visible > 0) point.radiance += lamp.seen.smooth.cwiseProduct(lamp.incident.irradiance);
-  }
+  if (point.faces_eye) see_lamps(light_samples, &point);
   return point;
+}
+
+void Viewer::see_lamps(const std::vector<Eigen::Vector2d>& light_samples, SeenPoint* point) const {
+  for (const LightDescription& light : lights) {
+    const SeenLamp& lamp = point->lamps.emplace_back(see(light, *point, light_samples));
+    if (lamp.visible > 0) point->radiance += lamp.seen.smooth.cwiseProduct(lamp.incident.irradiance);
+  }
 }
 
 LitBrdf Viewer::lit_brdf(const GlintQuery& query, const SeenPoint& point,
@@ -116,6 +121,7 @@ void Viewer::ask(const SeenPoint& point, double sigma_pixels, const SamplePlace&
   for (std::size_t n = 0; n < point.lamps.size(); ++n) {
     const SeenLamp& lamp = point.lamps[n];
     if (!(lamp.visible > 0)) continue;
+    query.light = static_cast<std::uint32_t>(n);
     if (gathering.patch_materials[point.material]) {
       query.query.roughness = lamp.seen.roughness;
       queries->lit.push_back(lit_brdf(query, point, lamp.incident));

@@ -28,7 +28,7 @@ struct StaticScene {
   bool shows_environment;  ///< where rays hit nothing
   std::vector<MaterialDescription> materials;
   PartMaterials part_materials;
-  std::vector<std::optional<GlintMaterial>> glints;  ///< one a material; only for those that a shape has
+  std::vector<std::optional<GlintMaterial>> glints;  ///< one a material; only for those that are used
 
   explicit StaticScene(const SceneDescription& description);
   Color far_radiance(const Eigen::Vector3d& direction) const {
@@ -87,6 +87,10 @@ struct Viewer {
   /// @param light_samples where on a light the shadow rays end, see light_ray; of a light without extent the
   /// first one does.
   SeenPoint look(double x, double y, const std::vector<Eigen::Vector2d>& light_samples) const;
+
+  /// Sees all lamps from a point that faces the eye, whose lamps and radiance are empty. @param light_samples
+  /// as those of `look`.
+  void see_lamps(const std::vector<Eigen::Vector2d>& light_samples, SeenPoint* point) const;
 
   /// Adds what a Gaussian of `sigma_pixels` about a point that faces the eye has to be asked.
   /// @param turns of the half vector by lamp, per unit of uv; empty: they are constant.

@@ -26,11 +26,12 @@ HOST_EDGES = {
     "scene": "base microfacet image surface",
     "job": "base microfacet image surface methods scene",
     "render": "base microfacet image surface device reference methods scene job",
+    "gbuffer": "base microfacet image surface device methods scene job render",
     "tables": "base surface",
     "measure": "base microfacet image surface device reference methods scene job render",
     "report": "base image surface device methods scene job render measure",
     "library": "base microfacet image surface device reference methods scene job render",
-    "app": "base microfacet image surface device reference methods scene job render tables verify measure report",
+    "app": "base microfacet image surface device reference methods scene job render gbuffer tables verify measure report",
     "main.cpp": "base app",
 }
 # What the public headers hide: whoever includes them needs none of these.

@@ -52,7 +52,7 @@ const std::vector<Mistake> kUnknownKeys = {
      "masking, "
      "tolerance, "
      "specular, "
-     "diffuse, multiple_scattering, coat"},
+     "diffuse, multiple_scattering, id, coat"},
 };
 INSTANTIATE_TEST_SUITE_P(UnknownKey, Errors, testing::ValuesIn(kUnknownKeys));
 
