@@ -24,7 +24,7 @@ set(kernels ${CMAKE_SOURCE_DIR}/kernels)
 file(GLOB_RECURSE kernel_programs CONFIGURE_DEPENDS ${kernels}/*.cl)
 file(GLOB_RECURSE kernel_headers CONFIGURE_DEPENDS ${kernels}/*.h)
 set(parts map/catmull_rom.h map/texel_quads.h map/walk_leaves.h pyramid/turned_elements.h pyramid/walk_records.h
-    smooth/turned_slopes.h)  # of what includes them
+    smooth/turned_slopes.h wave/primitives.h)  # of what includes them
 set(of_first_order gaussians/gaussians.cl pyramid/pyramid.cl smooth/smooth.cl triangles/triangles.cl)  # a variant
 set(of_records images/pyramid_images.cl pyramid/pyramid.cl)  # whose width is a variant
 set(compile_kernel ${CLANG} -x cl -cl-std=CL1.2 -fsyntax-only -Wall -Wextra -Werror -I ${kernels})
@@ -39,6 +39,10 @@ foreach(file ${kernel_programs} ${kernel_headers})
     if(name MATCHES "\\.h$")
       list(APPEND commands COMMAND ${compile_kernel} -DMICA_WAVE_ITEMS=${wave_items} -include ${file} /dev/null)
     else()
+      # What processors with AVX2 alone run; with all else it is as it is without.
+      if(NOT wave_items)
+        list(APPEND commands COMMAND ${compile_kernel} -mavx2 -mfma -mbmi2 ${file})
+      endif()
       foreach(interpolation 0 1 2)
         list(APPEND commands COMMAND ${compile_kernel} -DMICA_WAVE_ITEMS=${wave_items}
                                      -DMICA_INTERPOLATION=${interpolation} ${file})
@@ -47,6 +51,12 @@ foreach(file ${kernel_programs} ${kernel_headers})
         foreach(interpolation 0 1 2)
           list(APPEND commands COMMAND ${compile_kernel} -DMICA_WAVE_ITEMS=${wave_items} -DMICA_FIRST_ORDER=1
                                        -DMICA_INTERPOLATION=${interpolation} ${file})
+        endforeach()
+      endif()
+      if(name STREQUAL triangles/triangles.cl)
+        foreach(precision 1 2)
+          list(APPEND commands COMMAND ${compile_kernel} -DMICA_WAVE_ITEMS=${wave_items} -DMICA_PRECISION=${precision}
+                                       ${file})
         endforeach()
       endif()
       if(name IN_LIST of_records)

@@ -125,13 +125,10 @@ static inline void take_quads_alike(global const mica_map_query* query, private 
   if (list->count >= WAVE_LANES) integrate_first_quads(query, list, out, scratch);
 }
 
-// Bits of the quads that are thin: strips take them when no other quad is in the wave. Where nearly all of
-// the work is arithmetic, a second list that is never full costs more than it gains.
+#if MICA_PRECISION > 0
+// Bits of the quads that are thin: strips take them when no other quad is in the wave.
 static inline uint thin_quads(global const mica_map_query* query, private const quads* q,
                               WAVE_SHARED int* scratch) {
-#if MICA_PRECISION == 0
-  return 0;
-#else
 #define EDGE(a, b) fma(q->s##a - q->s##b, q->s##a - q->s##b, (q->t##a - q->t##b) * (q->t##a - q->t##b))
   const float w1x = QUAD_SIZE * query->whiten_1x, w1y = QUAD_SIZE * query->whiten_1y;
   const float w2x = QUAD_SIZE * query->whiten_2x, w2y = QUAD_SIZE * query->whiten_2y;
@@ -139,15 +136,18 @@ static inline uint thin_quads(global const mica_map_query* query, private const 
   const wave_float along_y = fma(w1y, w1y, w2y * w2y) + max(EDGE(00, 01), EDGE(10, 11));
 #undef EDGE
   return wave_ballot(wave_mask(min(along_x, along_y) <= THIN * THIN), scratch);
-#endif
 }
+#endif
 
 static inline void take_quads(global const mica_map_query* query, private const quads* q, uint bits,
                               private waiting_quads* waiting, private integrator* out,
                               WAVE_SHARED int* scratch) {
+#if MICA_PRECISION > 0
   const uint thin = bits & thin_quads(query, q, scratch);
   take_quads_alike(query, q, thin, &waiting->thin, out, scratch);
-  take_quads_alike(query, q, bits & ~thin, &waiting->other, out, scratch);
+  bits &= ~thin;
+#endif
+  take_quads_alike(query, q, bits, &waiting->other, out, scratch);
 }
 
 // What still waits: together, where that is one wave.

@@ -122,28 +122,7 @@ static inline wave_float wave_select(wave_float otherwise, wave_float chosen, wa
   return select(otherwise, chosen, mask);
 }
 
-// x86 has the two primitives that OpenCL lacks: a mask's bits, and packing the chosen lanes to the front.
-#ifndef MICA_AVX512
-#if defined(__AVX512F__) && defined(__AVX512DQ__)
-#define MICA_AVX512 1
-#else
-#define MICA_AVX512 0
-#endif
-#endif
-
-static inline uint wave_ballot(wave_int mask, private int* scratch) {
-  (void)scratch;
-#if MICA_AVX512
-  return (ushort)__builtin_ia32_cvtd2mask512(mask);
-#else
-  const int16 lane_bit = (int16)(1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768);
-  const int16 bits = mask & lane_bit;
-  const int8 b8 = bits.lo | bits.hi;
-  const int4 b4 = b8.lo | b8.hi;
-  const int2 b2 = b4.lo | b4.hi;
-  return (uint)(b2.lo | b2.hi);
-#endif
-}
+#include "wave/primitives.h"
 
 static inline float wave_sum(wave_float x, private int* scratch) {
   (void)scratch;
@@ -151,35 +130,6 @@ static inline float wave_sum(wave_float x, private int* scratch) {
   const float4 s4 = s8.lo + s8.hi;
   const float2 s2 = s4.lo + s4.hi;
   return s2.lo + s2.hi;
-}
-
-// 1 / sqrt(x) of a normal number, relative error 2e-7.
-static inline wave_float wave_rsqrt(wave_float x) {
-#if MICA_AVX512
-  const wave_float y = __builtin_ia32_rsqrt14ps512_mask(x, x, (ushort)0xffff);
-  return y * fma(-0.5f * x * y, y, 1.5f);  // one step of Newton's
-#else
-  return rsqrt(x);
-#endif
-}
-
-// 1 / sqrt(x) of a normal number, relative error 6e-5.
-static inline wave_float wave_rough_rsqrt(wave_float x) {
-#if MICA_AVX512
-  return __builtin_ia32_rsqrt14ps512_mask(x, x, (ushort)0xffff);
-#else
-  return rsqrt(x);
-#endif
-}
-
-// 1 / x of a normal number, relative error 2e-7.
-static inline wave_float wave_reciprocal(wave_float x) {
-#if MICA_AVX512
-  const wave_float y = __builtin_ia32_rcp14ps512_mask(x, x, (ushort)0xffff);
-  return y * fma(-x, y, 2.0f);  // one step of Newton's
-#else
-  return 1.0f / x;
-#endif
 }
 
 static inline float wave_max(wave_float x, private int* scratch) {
@@ -213,17 +163,6 @@ static inline wave_int wave_load_short_4x4(global const short* pointer, int row)
                                  vload4(0, pointer + 3 * row)));
 }
 
-// Writes the lanes in `bits`, packed, to list[0...]; what follows them, up to sixteen in all, is undefined
-// afterwards.
-static inline void wave_pack(private float* list, uint bits, wave_float value) {
-#if MICA_AVX512
-  *(private wave_float_anywhere*)list = __builtin_ia32_compresssf512_mask(value, value, (ushort)bits);
-#else
-  float lanes[WAVE_LANES];
-  vstore16(value, 0, lanes);
-  for (; bits; bits &= bits - 1) *list++ = lanes[lowest_bit(bits)];
-#endif
-}
 #define wave_list_load(list) (*(private const wave_float_anywhere*)(list))
 #define wave_list_store(list, value) (*(private wave_float_anywhere*)(list) = (value))
 #define wave_list_sync()
