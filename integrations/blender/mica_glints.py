@@ -264,6 +264,11 @@ def emission_of(lamp, warnings):
     return (node.inputs["Strength"].default_value, node.inputs["Color"].default_value[:3]) if node else (1, (1, 1, 1))
 
 
+def power_of(lamp):
+    """Watts as Blender means them since 4.0: before, an area lamp of P had the radiance P / (4 area), now P / (pi area)."""
+    return lamp.energy * (math.pi / 4 if lamp.type == "AREA" and bpy.app.version < (4, 0, 0) else 1)
+
+
 def describe_lamp(thing, group, exposure, warnings):
     lamp, scale = thing.data, thing.matrix_world.to_scale()
     factor, tint = emission_of(lamp, warnings)
@@ -273,7 +278,7 @@ def describe_lamp(thing, group, exposure, warnings):
         warnings.append(f"lamp '{lamp.name}': its spread is left out")
     size = (lamp.size, lamp.size_y if lamp.shape in ("RECTANGLE", "ELLIPSE") else lamp.size) if lamp.type == "AREA" else (None, None)
     return {
-        "name": group, "type": lamp.type, "energy": lamp.energy * factor * exposure, "color": [a * b for a, b in zip(lamp.color, tint)],
+        "name": group, "type": lamp.type, "energy": power_of(lamp) * factor * exposure, "color": [a * b for a, b in zip(lamp.color, tint)],
         "matrix_world": rigid(thing.matrix_world), "radius": getattr(lamp, "shadow_soft_size", None), "angle": getattr(lamp, "angle", None),
         "shape": getattr(lamp, "shape", None), "size": [side and side * abs(factor) for side, factor in zip(size, scale)],
         "exposure": getattr(lamp, "exposure", 0), "normalize": getattr(lamp, "normalize", True),
@@ -566,15 +571,17 @@ def main(words):
     if options.mica:
         os.environ["MICA"] = options.mica
     register()
-    if options.scene:
-        bpy.ops.wm.open_mainfile(filepath=os.path.abspath(options.scene))
-    scene, view_layer, folder = bpy.context.scene, bpy.context.view_layer, Path(options.out).resolve()
     try:
+        if options.scene:
+            bpy.ops.wm.open_mainfile(filepath=os.path.abspath(options.scene))
+        scene, view_layer, folder = bpy.context.scene, bpy.context.view_layer, Path(options.out).resolve()
         path, warnings = make_layer(scene, view_layer, bpy.context.evaluated_depsgraph_get(), folder)
         add_to_compositor(scene, view_layer, path)
         render_composite(scene, folder)
     except (Failure, OSError, RuntimeError) as error:
         sys.exit(f"mica_glints: {error}")
+    finally:
+        unregister()
     for warning in warnings:
         print(f"mica_glints: {warning}", file=sys.stderr)
 

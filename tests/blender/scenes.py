@@ -93,7 +93,7 @@ def surround(scene, low, high):
     link(ramp.outputs[0], background.inputs["Color"])
 
 
-def make_car(width=320, height=180, samples=32):
+def make_car(width=320, height=180, samples=16):
     scene = empty_scene(width, height, samples)
     paint = principled("paint", (0.55, 0.03, 0.04), 0.45)
     steel = principled("steel", (0.5, 0.5, 0.52), 0.4)
@@ -115,7 +115,7 @@ def make_car(width=320, height=180, samples=32):
 # One lamp of each kind over a plane: what it is, and what it has.
 LAMPS = {
     "POINT": {"energy": 300, "shadow_soft_size": 0},
-    "SPOT": {"energy": 300, "shadow_soft_size": 0, "spot_size": math.radians(50), "spot_blend": 0.3},
+    "SPOT": {"energy": 300, "shadow_soft_size": 0, "spot_size": math.radians(16), "spot_blend": 0.7},
     "SUN": {"energy": 3, "angle": math.radians(0.5)},
     "AREA": {"energy": 100, "size": 0.3},
 }
