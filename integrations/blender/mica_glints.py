@@ -270,20 +270,24 @@ def power_of(lamp):
 
 
 def describe_lamp(thing, group, exposure, warnings):
-    lamp, scale = thing.data, thing.matrix_world.to_scale()
+    lamp = thing.data
     factor, tint = emission_of(lamp, warnings)
     if getattr(lamp, "use_temperature", False):
         tint = [a * b for a, b in zip(tint, lamp.temperature_color)]
     if lamp.type == "AREA" and lamp.spread < 3.14:
         warnings.append(f"lamp '{lamp.name}': its spread is left out")
-    size = (lamp.size, lamp.size_y if lamp.shape in ("RECTANGLE", "ELLIPSE") else lamp.size) if lamp.type == "AREA" else (None, None)
-    return {
-        "name": group, "type": lamp.type, "energy": power_of(lamp) * factor * exposure, "color": [a * b for a, b in zip(lamp.color, tint)],
-        "matrix_world": rigid(thing.matrix_world), "radius": getattr(lamp, "shadow_soft_size", None), "angle": getattr(lamp, "angle", None),
-        "shape": getattr(lamp, "shape", None), "size": [side and side * abs(factor) for side, factor in zip(size, scale)],
+    told = {
+        "name": group, "type": lamp.type, "matrix_world": rigid(thing.matrix_world),
+        "energy": power_of(lamp) * factor * exposure, "color": [a * b for a, b in zip(lamp.color, tint)],
         "exposure": getattr(lamp, "exposure", 0), "normalize": getattr(lamp, "normalize", True),
-        "spot_size": getattr(lamp, "spot_size", None), "spot_blend": getattr(lamp, "spot_blend", None),
     }
+    for key, name in (("radius", "shadow_soft_size"), ("angle", "angle"), ("spot_size", "spot_size"), ("spot_blend", "spot_blend")):
+        told[key] = getattr(lamp, name, None)
+    if lamp.type == "AREA":  # a square or disk that is scaled unevenly is none any more
+        across, up, _ = thing.matrix_world.to_scale()
+        told["shape"] = "ELLIPSE" if lamp.shape in ("DISK", "ELLIPSE") else "RECTANGLE"
+        told["size"] = [lamp.size * across, (lamp.size_y if lamp.shape in ("RECTANGLE", "ELLIPSE") else lamp.size) * up]
+    return told
 
 
 def write_json(path, scene, depsgraph, lamps, groups, warnings):
@@ -307,7 +311,7 @@ def base_color(material, warnings):
     if node is None:
         return material.diffuse_color[:3]
     if node.inputs["Base Color"].is_linked:
-        warnings.append(f"material '{material.name}': its base colour is a texture, of which glints take none; give it an own colour")
+        warnings.append(f"material '{material.name}': its base colour's texture is left out; give it an own colour")
     return node.inputs["Base Color"].default_value[:3]
 
 
@@ -364,13 +368,15 @@ def program():
 
 
 def call_mica(arguments):
+    """@return what Mica warns of"""
     try:
         done = subprocess.run([program(), *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     except OSError as error:
         raise Failure(f"{program()} does not start ({error.strerror}): name Mica's program in the add-on's preferences or in MICA") from error
-    print(done.stderr, file=sys.stderr, end="")
+    print(done.stderr, end="")
     if done.returncode != 0:
         raise Failure(f"mica glints ends with {done.returncode}: {done.stderr.strip()}")
+    return [line.removeprefix("warning: ") for line in done.stderr.splitlines() if line.startswith("warning: ")]
 
 
 def check_objects(things, materials):
@@ -409,8 +415,9 @@ def make_layer(scene, view_layer, depsgraph, folder):
         fit.render.filepath = str(gbuffer)
         if bpy.ops.render.render(write_still=True, scene=fit.name) != {"FINISHED"}:
             raise Failure("the rendering of the G-buffer was stopped")
-    call_mica(["glints", str(gbuffer), "--scene", str(folder / "scene.toml"), "-o", str(layer),
-               "--preset", "blender5" if bpy.app.version >= (5, 0, 0) else "blender3", *sum(zip(("--filter", "--filter-width"), filter_of(scene)), ())])
+    preset, (kind, width) = "blender5" if bpy.app.version >= (5, 0, 0) else "blender3", filter_of(scene)
+    warnings += call_mica(["glints", str(gbuffer), "--scene", str(folder / "scene.toml"), "-o", str(layer),
+                           "--preset", preset, "--filter", kind, "--filter-width", width])
     return layer, warnings
 
 
