@@ -17,7 +17,8 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
 import bpy
-from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProperty, IntProperty, PointerProperty, StringProperty
+from bpy.props import (BoolProperty, EnumProperty, FloatProperty, FloatVectorProperty, IntProperty, PointerProperty,
+                       StringProperty)
 from mathutils import Matrix
 
 bl_info = {
@@ -40,7 +41,8 @@ GENERATORS = {
 }
 METHODS = ("auto", "triangles", "pyramid", "gaussians", "beckmanns", "cavities", "smooth")
 PASSES = ("z", "position", "normal", "uv")
-AOVS = {"smooth_normal": "COLOR", "true_normal": "COLOR", "tangent": "COLOR", "tangent_sign": "VALUE", "glint_id": "VALUE"}
+AOVS = {"smooth_normal": "COLOR", "true_normal": "COLOR", "tangent": "COLOR", "tangent_sign": "VALUE",
+        "glint_id": "VALUE"}
 LAYER = "Mica Glints"  # name of the image node, and with " Add" of the node that adds it
 
 
@@ -58,32 +60,40 @@ class MicaGlintsMaterial(bpy.types.PropertyGroup):
     file: StringProperty(name="File", subtype="FILE_PATH", description="Normal map, height or slope map")
     encoding: EnumProperty(name="Encoding", items=choices("found", "unorm", "signed", "height", "slope"),
                            description="How the file tells normals; 'found': as its numbers look")
-    green: EnumProperty(name="Green", items=choices("up", "down"), description="Direction in which the second channel points")
+    green: EnumProperty(name="Green", items=choices("up", "down"),
+                        description="Direction in which the second channel points")
     resolution: IntProperty(name="Resolution", default=2048, min=8, max=16384, description="Texels of a side")
-    size: FloatProperty(name="Size", default=12, min=1, soft_max=100, description="Of a flake, bump or scratch, or correlation; texels")
+    size: FloatProperty(name="Size", default=12, min=2, soft_max=100,
+                        description="Of a flake, bump or scratch, or correlation; texels")
     strength: FloatProperty(name="Strength", default=0.2, min=0, max=2,
                             description="Roughness of flakes, slope of bumps, depth of scratches and dents")
-    direction: FloatProperty(name="Direction", subtype="ANGLE", description="Of brushing and scratches, from u towards v")
+    direction: FloatProperty(name="Direction", subtype="ANGLE", min=-2 * math.pi, max=2 * math.pi,
+                             description="Of brushing and scratches, from u towards v")
     seed: IntProperty(name="Seed", default=1, min=0)
-    repeat: FloatVectorProperty(name="Repeat", size=2, default=(1, 1), min=1e-3, max=1e6, description="Map periods over one unit of u and v")
+    repeat: FloatVectorProperty(name="Repeat", size=2, default=(1, 1), min=1e-3, max=1e6,
+                                description="Map periods over one unit of u and v")
     method: EnumProperty(name="Method", items=choices(*METHODS), description="Evaluator of the P-NDF")
     roughness: FloatProperty(name="Roughness", default=0.01, min=1e-4, max=1, precision=4,
                              description="Of one facet: standard deviation of its normals on the unit disk")
     own_color: BoolProperty(name="Own colour", description="Instead of the Principled BSDF's base colour")
-    color: FloatVectorProperty(name="Colour", subtype="COLOR", default=(1, 1, 1), min=0, max=1, description="Reflectance, linear")
+    color: FloatVectorProperty(name="Colour", subtype="COLOR", default=(1, 1, 1), min=0, max=1,
+                               description="Reflectance, linear")
 
 
 class MicaGlintsScene(bpy.types.PropertyGroup):
-    folder: StringProperty(name="Folder", subtype="DIR_PATH", default="//mica_glints/", description="For the G-buffer and the layer")
+    folder: StringProperty(name="Folder", subtype="DIR_PATH", default="//mica_glints/",
+                           description="For the G-buffer and the layer")
     tolerance: FloatProperty(name="Tolerance", default=0.01, min=5e-4, max=0.5, precision=4,
                              description="Relative error that the method 'auto' may make")
-    shadow_samples: IntProperty(name="Shadow samples", default=64, min=1, max=4096, description="A pixel, for the lamps' visibility")
+    shadow_samples: IntProperty(name="Shadow samples", default=64, min=1, max=4096,
+                                description="A pixel, for the lamps' visibility")
 
 
 class MicaGlintsPreferences(bpy.types.AddonPreferences):
     bl_idname = __name__
     # Not the scene's: a file from elsewhere must not say which program runs here.
-    program: StringProperty(name="Mica", subtype="FILE_PATH", description="The program; default MICA of the environment, then mica in PATH")
+    program: StringProperty(name="Mica", subtype="FILE_PATH",
+                            description="The program; default MICA of the environment, then mica in PATH")
 
     def draw(self, context):
         self.layout.prop(self, "program")
@@ -187,7 +197,13 @@ def white_diffuse():
 def prepare_scene(scene):
     """Settings of a picture whose every pixel is one ray through its centre."""
     render, cycles = scene.render, scene.cycles
-    render.engine, scene.world, scene.use_nodes = "CYCLES", None, False
+    if hasattr(scene, "compositing_node_group"):  # from Blender 5.0 on
+        scene.compositing_node_group = None
+    elif scene.node_tree:
+        scene.node_tree.nodes.clear()
+    if render.engine != "CYCLES":
+        cycles.film_exposure = 1
+    render.engine, scene.world = "CYCLES", None
     render.film_transparent, render.use_single_layer, render.use_persistent_data = True, False, False
     render.use_compositing = render.use_sequencer = render.use_motion_blur = False
     render.use_border = render.use_freestyle = render.use_multiview = False
@@ -198,12 +214,17 @@ def prepare_scene(scene):
     render.image_settings.exr_codec = "ZIP"
 
 
+def remove_scene(scene):
+    scene.user_clear()  # a copy counts itself as its user for each Render Layers node that it had
+    bpy.data.scenes.remove(scene)
+
+
 @contextmanager
 def gbuffer_scene(source, layer, materials, lamps):
     """A scene of the same objects that renders the G-buffer; yields it and the names of the lamps' groups."""
     with ExitStack() as stack:
         scene = source.copy()
-        stack.callback(bpy.data.scenes.remove, scene)
+        stack.callback(remove_scene, scene)
         prepare_scene(scene)
         fit = add_layer(scene, layer, "G-buffer")
         shadows = add_layer(scene, layer, "Lamps")
@@ -234,8 +255,11 @@ def rendered_objects(branch):
 
 
 def is_lamp(thing):
-    portal = thing.type == "LIGHT" and thing.data.type == "AREA" and thing.data.cycles.is_portal
-    return thing.type == "LIGHT" and thing.visible_glossy and not portal
+    """Whether a lamp's mirror images are seen."""
+    if thing.type != "LIGHT" or not thing.visible_glossy:
+        return False
+    portal = getattr(thing.data, "cycles", None)
+    return not (thing.data.type == "AREA" and portal and portal.is_portal)
 
 
 def rigid(matrix):
@@ -248,9 +272,9 @@ def describe_camera(camera):
     if data.type == "PANO":
         raise Failure(f"camera '{camera.name}' is panoramic; glints want a perspective or an orthographic one")
     return {
-        "type": data.type, "sensor_fit": data.sensor_fit, "shift": [data.shift_x, data.shift_y], "lens_mm": data.lens,
-        "sensor_width_mm": data.sensor_width, "sensor_height_mm": data.sensor_height, "angle_x": data.angle_x,
-        "angle_y": data.angle_y, "ortho_scale": data.ortho_scale, "matrix_world": rigid(camera.matrix_world),
+        "type": data.type, "sensor_fit": data.sensor_fit, "shift": [data.shift_x, data.shift_y],
+        "angle_x": data.angle_x, "angle_y": data.angle_y, "ortho_scale": data.ortho_scale,
+        "matrix_world": rigid(camera.matrix_world),
     }
 
 
@@ -261,11 +285,13 @@ def emission_of(lamp, warnings):
     node = next((node for node in lamp.node_tree.nodes if node.bl_idname == "ShaderNodeEmission"), None)
     if node is None or node.inputs["Color"].is_linked or node.inputs["Strength"].is_linked:
         warnings.append(f"lamp '{lamp.name}': its texture is left out")
-    return (node.inputs["Strength"].default_value, node.inputs["Color"].default_value[:3]) if node else (1, (1, 1, 1))
+    if node is None:
+        return 1, (1, 1, 1)
+    return node.inputs["Strength"].default_value, node.inputs["Color"].default_value[:3]
 
 
 def power_of(lamp):
-    """Watts as Blender means them since 4.0: before, an area lamp of P had the radiance P / (4 area), now P / (pi area)."""
+    """Power as Blender means it from 4.0 on: before, an area lamp had the radiance P / (4 area), now P / (pi area)."""
     return lamp.energy * (math.pi / 4 if lamp.type == "AREA" and bpy.app.version < (4, 0, 0) else 1)
 
 
@@ -281,21 +307,25 @@ def describe_lamp(thing, group, exposure, warnings):
         "energy": power_of(lamp) * factor * exposure, "color": [a * b for a, b in zip(lamp.color, tint)],
         "exposure": getattr(lamp, "exposure", 0), "normalize": getattr(lamp, "normalize", True),
     }
-    for key, name in (("radius", "shadow_soft_size"), ("angle", "angle"), ("spot_size", "spot_size"), ("spot_blend", "spot_blend")):
-        told[key] = getattr(lamp, name, None)
+    told["radius"] = getattr(lamp, "shadow_soft_size", None)
+    for name in ("angle", "spot_size", "spot_blend"):
+        told[name] = getattr(lamp, name, None)
     if lamp.type == "AREA":  # a square or disk that is scaled unevenly is none any more
         across, up, _ = thing.matrix_world.to_scale()
         told["shape"] = "ELLIPSE" if lamp.shape in ("DISK", "ELLIPSE") else "RECTANGLE"
-        told["size"] = [lamp.size * across, (lamp.size_y if lamp.shape in ("RECTANGLE", "ELLIPSE") else lamp.size) * up]
+        height = lamp.size_y if lamp.shape in ("RECTANGLE", "ELLIPSE") else lamp.size
+        told["size"] = [lamp.size * across, height * up]
     return told
 
 
 def write_json(path, scene, depsgraph, lamps, groups, warnings):
-    render, film = scene.render, scene.cycles.film_exposure  # the film's factor is on the beauty and the lamps' layer alike
-    described = [describe_lamp(lamp.evaluated_get(depsgraph), group, film, warnings) for lamp, group in zip(lamps, groups)]
+    render, film = scene.render, scene.cycles.film_exposure  # a factor of the beauty and the lamps' layer alike
+    described = [describe_lamp(lamp.evaluated_get(depsgraph), group, film, warnings)
+                 for lamp, group in zip(lamps, groups)]
     size = [side * render.resolution_percentage // 100 for side in (render.resolution_x, render.resolution_y)]
     told = {
-        "blender": bpy.app.version_string, "resolution": size, "pixel_aspect": [render.pixel_aspect_x, render.pixel_aspect_y],
+        "blender": bpy.app.version_string, "resolution": size,
+        "pixel_aspect": [render.pixel_aspect_x, render.pixel_aspect_y],
         "camera": describe_camera(scene.camera.evaluated_get(depsgraph)), "lamps": described,
     }
     path.write_text(json.dumps(told, indent=1))
@@ -372,7 +402,8 @@ def call_mica(arguments):
     try:
         done = subprocess.run([program(), *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     except OSError as error:
-        raise Failure(f"{program()} does not start ({error.strerror}): name Mica's program in the add-on's preferences or in MICA") from error
+        advice = "name Mica's program in the add-on's preferences or in MICA"
+        raise Failure(f"{program()} does not start ({error.strerror}): {advice}") from error
     print(done.stderr, end="")
     if done.returncode != 0:
         raise Failure(f"mica glints ends with {done.returncode}: {done.stderr.strip()}")
@@ -387,14 +418,16 @@ def check_objects(things, materials):
 
 
 def check_scene(scene, materials, lamps):
+    if not hasattr(scene, "cycles"):
+        raise Failure("Cycles, which renders the G-buffer, is switched off in the preferences")
     linked = [material.name for material in materials if material.library]
     if linked:
         raise Failure(f"material '{linked[0]}' is another file's: make it local, or override it")
     if scene.render.use_border and scene.render.use_crop_to_border:
         raise Failure("the picture is cropped to a render region: switch 'Crop to Render Region' off")
-    for what, missing in (("no camera", not scene.camera), ("no material with Mica glints", not materials), ("no lamp", not lamps)):
-        if missing:
-            raise Failure(f"scene '{scene.name}' has {what}")
+    for what, there in (("camera", scene.camera), ("material with Mica glints", materials), ("lamp", lamps)):
+        if not there:
+            raise Failure(f"scene '{scene.name}' has no {what}")
 
 
 def make_layer(scene, view_layer, depsgraph, folder):
@@ -402,7 +435,8 @@ def make_layer(scene, view_layer, depsgraph, folder):
 
     @return the layer's path and what the artist should know
     """
-    materials = [material for material in bpy.data.materials if material.mica_glints.enabled and material.users > material.use_fake_user]
+    materials = [material for material in bpy.data.materials
+                 if material.mica_glints.enabled and material.users > material.use_fake_user]
     things = list(dict.fromkeys(rendered_objects(view_layer.layer_collection)))
     lamps, warnings = [thing for thing in things if is_lamp(thing)], []
     check_scene(scene, materials, lamps)
@@ -410,7 +444,7 @@ def make_layer(scene, view_layer, depsgraph, folder):
     folder.mkdir(parents=True, exist_ok=True)
     gbuffer, layer = folder / "gbuffer.exr", folder / "layer.exr"
     with gbuffer_scene(scene, view_layer, materials, lamps) as (fit, groups):
-        write_json(gbuffer.with_suffix(".json"), scene, depsgraph, lamps, groups, warnings)
+        write_json(gbuffer.with_suffix(".json"), fit, depsgraph, lamps, groups, warnings)
         write_toml(folder / "scene.toml", scene, materials, warnings)
         fit.render.filepath = str(gbuffer)
         if bpy.ops.render.render(write_still=True, scene=fit.name) != {"FINISHED"}:
@@ -436,7 +470,7 @@ def compositor_of(scene):
 
 
 def picture_of(tree, output, scene, view_layer):
-    """The socket of the picture: of its Render Layers node or, so that glints stay sharp, of the Denoise node behind it."""
+    """The picture's socket: of its Render Layers node or, so that glints stay sharp, of a Denoise node behind it."""
     rendered = [node for node in tree.nodes if node.bl_idname == "CompositorNodeRLayers" and node.scene == scene]
     node = next((node for node in rendered if node.layer == view_layer.name), None)
     if node is None:
@@ -533,7 +567,8 @@ class MATERIAL_PT_mica_glints(MicaGlintsPanel, bpy.types.Panel):
         else:
             directed = ("direction",) if "{direction}" in GENERATORS[settings.source] else ()
             own = ("resolution", "size", "strength", *directed, "seed")
-        self.draw_properties(settings, "source", *own, "repeat", "method", "roughness", "own_color", *(["color"] if settings.own_color else []))
+        color = ("own_color", "color") if settings.own_color else ("own_color",)
+        self.draw_properties(settings, "source", *own, "repeat", "method", "roughness", *color)
 
 
 class RENDER_PT_mica_glints(MicaGlintsPanel, bpy.types.Panel):
@@ -544,7 +579,8 @@ class RENDER_PT_mica_glints(MicaGlintsPanel, bpy.types.Panel):
         self.layout.operator(MicaGlintsRender.bl_idname)
 
 
-CLASSES = (MicaGlintsMaterial, MicaGlintsScene, MicaGlintsPreferences, MicaGlintsRender, MATERIAL_PT_mica_glints, RENDER_PT_mica_glints)
+CLASSES = (MicaGlintsMaterial, MicaGlintsScene, MicaGlintsPreferences, MicaGlintsRender, MATERIAL_PT_mica_glints,
+           RENDER_PT_mica_glints)
 
 
 def register():
@@ -577,7 +613,9 @@ def main(words):
     options = parser.parse_args(words)
     if options.mica:
         os.environ["MICA"] = options.mica
-    register()
+    installed = hasattr(bpy.types.Scene, "mica_glints")
+    if not installed:
+        register()
     try:
         if options.scene:
             bpy.ops.wm.open_mainfile(filepath=os.path.abspath(options.scene))
@@ -588,7 +626,8 @@ def main(words):
     except (Failure, OSError, RuntimeError) as error:
         sys.exit(f"mica_glints: {error}")
     finally:
-        unregister()
+        if not installed:
+            unregister()
     for warning in warnings:
         print(f"mica_glints: {warning}", file=sys.stderr)
 
