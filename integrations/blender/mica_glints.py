@@ -85,6 +85,8 @@ class MicaGlintsScene(bpy.types.PropertyGroup):
                            description="For the G-buffer and the layer")
     tolerance: FloatProperty(name="Tolerance", default=0.01, min=5e-4, max=0.5, precision=4,
                              description="Relative error that the method 'auto' may make")
+    scale: IntProperty(name="Scale", default=1, min=1, max=16,
+                       description="The G-buffer has so many times the picture's width and height: cleaner edges")
     shadow_samples: IntProperty(name="Shadow samples", default=64, min=1, max=4096,
                                 description="A pixel, for the lamps' visibility")
 
@@ -194,6 +196,10 @@ def white_diffuse():
         bpy.data.materials.remove(material)
 
 
+def size_of(render):
+    return [side * render.resolution_percentage // 100 for side in (render.resolution_x, render.resolution_y)]
+
+
 def prepare_scene(scene):
     """Settings of a picture whose every pixel is one ray through its centre."""
     render, cycles = scene.render, scene.cycles
@@ -209,6 +215,8 @@ def prepare_scene(scene):
     render.use_border = render.use_freestyle = render.use_multiview = False
     cycles.samples, cycles.pixel_filter_type, cycles.filter_width = 1, "BLACKMAN_HARRIS", 0.01
     cycles.use_adaptive_sampling = cycles.use_denoising = cycles.shading_system = False
+    render.resolution_x, render.resolution_y = (scene.mica_glints.scale * side for side in size_of(render))
+    render.resolution_percentage = 100
     cycles.max_bounces, cycles.sample_clamp_direct, cycles.light_sampling_threshold = 0, 0, 0
     write_format(render.image_settings, "MULTI_LAYER_IMAGE", "OPEN_EXR_MULTILAYER", "32")
     render.image_settings.exr_codec = "ZIP"
@@ -322,9 +330,8 @@ def write_json(path, scene, depsgraph, lamps, groups, warnings):
     render, film = scene.render, scene.cycles.film_exposure  # a factor of the beauty and the lamps' layer alike
     described = [describe_lamp(lamp.evaluated_get(depsgraph), group, film, warnings)
                  for lamp, group in zip(lamps, groups)]
-    size = [side * render.resolution_percentage // 100 for side in (render.resolution_x, render.resolution_y)]
     told = {
-        "blender": bpy.app.version_string, "resolution": size,
+        "blender": bpy.app.version_string, "resolution": size_of(render),
         "pixel_aspect": [render.pixel_aspect_x, render.pixel_aspect_y],
         "camera": describe_camera(scene.camera.evaluated_get(depsgraph)), "lamps": described,
     }
@@ -451,7 +458,8 @@ def make_layer(scene, view_layer, depsgraph, folder):
             raise Failure("the rendering of the G-buffer was stopped")
     preset, (kind, width) = "blender5" if bpy.app.version >= (5, 0, 0) else "blender3", filter_of(scene)
     warnings += call_mica(["glints", str(gbuffer), "--scene", str(folder / "scene.toml"), "-o", str(layer),
-                           "--preset", preset, "--filter", kind, "--filter-width", width])
+                           "--preset", preset, "--filter", kind, "--filter-width", width,
+                           "--scale", str(scene.mica_glints.scale)])
     return layer, warnings
 
 
@@ -575,7 +583,7 @@ class RENDER_PT_mica_glints(MicaGlintsPanel, bpy.types.Panel):
     bl_context = "render"
 
     def draw_settings(self, context):
-        self.draw_properties(context.scene.mica_glints, "folder", "tolerance", "shadow_samples")
+        self.draw_properties(context.scene.mica_glints, "folder", "tolerance", "scale", "shadow_samples")
         self.layout.operator(MicaGlintsRender.bl_idname)
 
 

@@ -127,9 +127,9 @@ LAMPS = {
 }
 # And how it is seen.
 CAMERAS = {
-    "POINT": {},
+    "POINT": {"type": "ORTHO", "ortho_scale": 2.2},
     "SPOT": {"sensor_fit": "VERTICAL", "shift_x": 0.1, "shift_y": -0.05, "lens": 45},
-    "SUN": {"type": "ORTHO", "ortho_scale": 2.2},
+    "SUN": {},
     "AREA": {"sensor_fit": "HORIZONTAL"},
 }
 
