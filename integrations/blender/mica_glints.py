@@ -220,6 +220,8 @@ def prepare_scene(scene):
     cycles.max_bounces, cycles.sample_clamp_direct, cycles.light_sampling_threshold = 0, 0, 0
     write_format(render.image_settings, "MULTI_LAYER_IMAGE", "OPEN_EXR_MULTILAYER", "32")
     render.image_settings.exr_codec = "ZIP"
+    if hasattr(render.image_settings, "use_exr_interleave"):  # 5.0 writes no parts of pixels that are not square
+        render.image_settings.use_exr_interleave = True
 
 
 def remove_scene(scene):
@@ -315,11 +317,12 @@ def describe_lamp(thing, group, exposure, warnings):
         "energy": power_of(lamp) * factor * exposure, "color": [a * b for a, b in zip(lamp.color, tint)],
         "exposure": getattr(lamp, "exposure", 0), "normalize": getattr(lamp, "normalize", True),
     }
-    told["radius"] = getattr(lamp, "shadow_soft_size", None)
-    for name in ("angle", "spot_size", "spot_blend"):
-        told[name] = getattr(lamp, name, None)
+    across, up, along = thing.matrix_world.to_scale()
+    told["radius"], told["angle"] = getattr(lamp, "shadow_soft_size", None), getattr(lamp, "angle", None)
+    # A cone that is scaled is no round one: then the lamps' layer alone tells where it shines.
+    if lamp.type == "SPOT" and max(abs(side - 1) for side in (across, up, along)) < 1e-4:
+        told["spot_size"], told["spot_blend"] = lamp.spot_size, lamp.spot_blend
     if lamp.type == "AREA":  # a square or disk that is scaled unevenly is none any more
-        across, up, _ = thing.matrix_world.to_scale()
         told["shape"] = "ELLIPSE" if lamp.shape in ("DISK", "ELLIPSE") else "RECTANGLE"
         height = lamp.size_y if lamp.shape in ("RECTANGLE", "ELLIPSE") else lamp.size
         told["size"] = [lamp.size * across, height * up]
