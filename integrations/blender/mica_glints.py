@@ -462,7 +462,7 @@ def make_layer(scene, view_layer, depsgraph, folder):
     preset, (kind, width) = "blender5" if bpy.app.version >= (5, 0, 0) else "blender3", filter_of(scene)
     warnings += call_mica(["glints", str(gbuffer), "--scene", str(folder / "scene.toml"), "-o", str(layer),
                            "--preset", preset, "--filter", kind, "--filter-width", width,
-                           "--scale", str(scene.mica_glints.scale)])
+                           "--scale", str(scene.mica_glints.scale), "--quiet"])
     return layer, warnings
 
 

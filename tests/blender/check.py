@@ -78,6 +78,10 @@ class Sight:
         facing = normal if normal.dot(self.eye - place) > 0 else -normal
         return (place, facing, thing.data.materials[0].name) if found else None
 
+    def is_shadowed(self, place, normal, lamp):
+        way = lamp.matrix_world.translation - place
+        return self.scene.ray_cast(self.depsgraph, place + 1e-3 * normal, way.normalized(), distance=way.length)[0]
+
     def lobe_light(self, place, normal, lamp, alpha):
         """Radiance of a smooth white Beckmann lobe: of a point's power / 4 pi, of an area's / pi along its axis."""
         way = lamp.matrix_world.translation - place
@@ -89,7 +93,7 @@ class Sight:
         cosine = half.dot(normal)
         if light.dot(normal) <= 0 or cosine <= 0:
             return 0
-        if self.scene.ray_cast(self.depsgraph, place + 1e-3 * normal, light, distance=way.length)[0]:
+        if self.is_shadowed(place, normal, lamp):
             return 0
         density = math.exp((1 - 1 / cosine**2) / alpha**2) / (math.pi * alpha**2 * cosine**4)
         return lamp.data.energy * facing / way.length_squared * density / (4 * max(0.05, view.dot(normal)))
@@ -170,15 +174,16 @@ def check_highlights(sight, layer):
 
 def check_streak(sight, layer):
     """The plate is brushed along x, so its normals lean along y alone: so must the half vectors where it has light."""
-    lamps = [thing.matrix_world.translation for thing in bpy.context.scene.objects if thing.type == "LIGHT"]
-    streak = everywhere = 0
-    for pixel, hit in enumerate(sight.hits):
-        if hit and hit[2] == "steel":
-            halves = [((lamp - hit[0]).normalized() + (sight.eye - hit[0]).normalized()).normalized() for lamp in lamps]
-            everywhere += layer.light(pixel)
-            streak += layer.light(pixel) if min(abs(half.x) for half in halves) < 0.06 else 0
-    share = streak / everywhere if everywhere else 0
-    expect(share > 0.99, f"light of the brushed plate is a streak across the brushing: {100 * share:.2f}%")
+    lamps = [thing for thing in bpy.context.scene.objects if thing.type == "LIGHT"]
+
+    def is_streak(place, normal, lamp):
+        half = (lamp.matrix_world.translation - place).normalized() + (sight.eye - place).normalized()
+        return abs(half.normalized().x) < 0.06 and not sight.is_shadowed(place, normal, lamp)
+
+    steel = [pixel for pixel, hit in enumerate(sight.hits) if hit and hit[2] == "steel"]
+    streak = [pixel for pixel in steel if any(is_streak(*sight.hits[pixel][:2], lamp) for lamp in lamps)]
+    share = sum(map(layer.light, streak)) / max(1e-9, sum(map(layer.light, steel)))
+    expect(share > 0.99, f"{100 * share:.2f}% of the plate's light are in a streak across the brushing, out of shadows")
 
 
 def check_lamp(kind, mica, work, roughness=0.05):
