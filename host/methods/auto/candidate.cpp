@@ -34,7 +34,7 @@ double pieces_a_texel(const Surface& surface, double cell) {
   double sum = 0;
   for (int n = 0; n < samples * samples; ++n) {
     const int i = (n % samples) * surface.width() / samples, j = (n / samples) * surface.height() / samples;
-    const Eigen::Vector2d normal = surface.texel(i, j);
+    const Eigen::Vector2d& normal = surface.texel(i, j);
     sum += (1 + (surface.texel(i + 1, j) - normal).norm() / cell) *
            (1 + (surface.texel(i, j + 1) - normal).norm() / cell);
   }

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "host/methods/map/map_structure.h"
 #include "host/methods/method.h"
@@ -53,6 +54,18 @@ class TrianglesMethod : public Method {
       if (tolerance <= kExactTriangles) return Promise{relative_bound(roughness), kPeakBound};
       return Promise{std::max(tolerance, relative_bound(roughness)), tolerance};
     });
+  }
+
+  std::vector<MethodVariant> variants(const std::vector<int>&) const override {
+    std::vector<MethodVariant> all;
+    all.push_back({settings(), name(), ""});
+    for (const double tolerance : {1e-3, 1e-2}) {
+      std::unique_ptr<MethodSettings> less = settings();
+      less->tolerance = tolerance;
+      all.push_back(
+          {std::move(less), fmt::format("triangles, to {}", tolerance), fmt::format("{}", tolerance)});
+    }
+    return all;
   }
 
   OperationCounter counter(Device* device, const Surface* surface, const MethodSettings&) const override {
