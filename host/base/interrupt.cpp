@@ -19,9 +19,9 @@ int wake[2] = {-1, -1};
 void remember(int signal) {
   const int before = errno;
   received = signal;
-  // More of them change nothing (a scheduler, or `timeout`, sends two at once): the first ends the process within
-  // a second, and the default action would leave what is unfinished. Without the thread that sees to it, there is
-  // the default action alone.
+  // More of them change nothing (a scheduler, or `timeout`, sends two at once): the first ends the process
+  // within a second, and the default action would leave what is unfinished. Without the thread that sees to
+  // it, there is the default action alone.
   if (wake[1] < 0) std::signal(signal, SIG_DFL);
   const char byte = 0;
   static_cast<void>(!write(wake[1], &byte, 1));

@@ -23,14 +23,16 @@ struct QueryClass {
 struct AutoChoice {
   QueryClass kind;
   std::string evaluator;       ///< in words: "gaussians, 2 a texel and axis"
-  std::size_t samples = 0;     ///< queries that it was judged by
+  std::size_t samples = 0;     ///< queries that it was judged by; 0: it keeps the tolerance by itself
   double relative_l2 = 0;      ///< of these
   double upper_bound = 0;      ///< of the relative L2 of all queries of the class, at 95% confidence
   double typical_density = 0;  ///< sum of squares of the samples' densities over their sum
+  double share_of_bound = 1;   ///< of estimated errors, so that their squares add up to what the bound allows
   double cost = 0;             ///< ns of one core that a query is estimated to take
 };
 
-/// "footprints of about 4 texels, roughness from 0.02: triangles; relative L2 0, at most 0.0001"
+/// "footprints of about 4 texels, roughness from 0.02: triangles; relative L2 0, at most 0.0001 at 95%
+/// confidence by 256 queries"
 std::string words(const AutoChoice& choice);
 
 }  // namespace mica::host

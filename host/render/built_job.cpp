@@ -131,10 +131,8 @@ void BuiltJob::calibrate(std::size_t n, Evaluator* evaluator) {
       queries.size(), [&](std::size_t k) { return queries[k]; }, scale);
   choices_[n].clear();
   for (const AutoChoice& choice : evaluator->choices())
-    choices_[n].push_back(
-        fmt::format("surface {}: {}: {} at 95% confidence by {} of the job's queries; tolerance {}",
-                    plan_.evaluators[n].surface, evaluator->name(), words(choice), choice.samples,
-                    job_.accuracy.tolerance));
+    choices_[n].push_back(fmt::format("surface {}: {}: {}; tolerance {}", plan_.evaluators[n].surface,
+                                      evaluator->name(), words(choice), job_.accuracy.tolerance));
 }
 
 std::vector<std::string> BuiltJob::notes() const {

@@ -66,8 +66,8 @@ static inline int legendre_rule(float range, private int* count) {
 #endif
 }
 
-// What right triangles within the cutoff are integrated beyond it: the lower the cutoff, the more of a density
-// would be lost where triangles are large beside the lobe.
+// What right triangles within the cutoff are integrated beyond it: the lower the cutoff, the more of a
+// density would be lost where triangles are large beside the lobe.
 #if MICA_PRECISION == 0
 #define BEYOND_CUTOFF 0.0f
 #else

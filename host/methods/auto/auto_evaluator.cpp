@@ -55,6 +55,14 @@ double typical_density(const std::vector<float>& densities) {
   return sum > 0 ? squares / sum : 0;
 }
 
+/// What makes of estimates sqrt(D max(D, T)) of densities such that have the bound on their sum of squares.
+double share_of_bound(const std::vector<float>& densities, double typical) {
+  double squares = 0, estimates = 0;
+  for (const double density : densities)
+    squares += density * density, estimates += density * std::max(density, typical);
+  return estimates > 0 ? std::sqrt(squares / estimates) : 1;
+}
+
 }  // namespace
 
 AutoEvaluator::AutoEvaluator(Device& device, const Surface& surface, double tolerance, double looking_seconds)
@@ -179,6 +187,7 @@ AutoChoice AutoEvaluator::choose(Samples* samples) {
     choose_of(kind, samples, &best);
   if (candidate_of_[samples->kind] == candidates_.triangles) check_triangles(samples, &best);
   best.typical_density = typical_density(samples->expected);
+  best.share_of_bound = share_of_bound(samples->expected, best.typical_density);
   return best;
 }
 
@@ -201,11 +210,12 @@ void AutoEvaluator::check_triangles(Samples* samples, AutoChoice* choice) {
   extend(evaluator(samples->reference), samples->queries, count, &samples->expected);
   extend(evaluator(&candidates_.all[candidates_.triangles]), samples->queries, samples->expected.size(),
          &densities);
+  if (typical_density(samples->expected) == 0) return;  // nothing to be off from
   const SampledError error = sampled_error(densities, samples->expected, kQuantile);
   choice->samples = samples->expected.size();
   choice->relative_l2 = error.relative_l2;
   choice->upper_bound = std::min(tolerance_, error.upper_bound + samples->reference_error);
-  if (error.lower_bound <= tolerance_ + samples->reference_error) return;
+  if (error.relative_l2 <= tolerance_) return;
   candidate_of_[samples->kind] = candidates_.exact_triangles;
   choice->evaluator = candidates_.all[candidates_.exact_triangles].label;
   choice->relative_l2 = 0, choice->upper_bound = kExactTriangles;
@@ -301,7 +311,8 @@ double AutoEvaluator::error_estimate(const Query& query, double density) const {
   const QueryClass kind = class_of(query, surface_.width(), surface_.height());
   for (const AutoChoice& choice : choices_)
     if (!(choice.kind < kind) && !(kind < choice.kind))
-      return choice.upper_bound * std::sqrt(density * std::max(density, choice.typical_density));
+      return choice.upper_bound * choice.share_of_bound *
+             std::sqrt(density * std::max(density, choice.typical_density));
   return tolerance_ * density;  // of triangles, who answer what was not sampled
 }
 
