@@ -144,7 +144,11 @@ def check_car(mica, work):
     sight = Sight(bpy.context.scene)
     glinted = [hit is not None and hit[2] in ("paint", "steel") for hit in sight.hits]
     outside = [pixel for pixel, on in enumerate(glinted) if not on]
-    changed = sum(composite[pixel] != beauty[pixel] for pixel in outside)
+    # Two renderings of Blender's differ by rounding, as its threads come to share the picture.
+    rounding = 1e-6
+    changed = sum(
+        max(abs(a - b) for a, b in zip(composite[pixel], beauty[pixel])) > rounding for pixel in outside
+    )
     expect(len(outside) > 1000 and changed == 0,
            f"{changed} of {len(outside)} pixels outside glinted materials differ from the beauty")
     expect(all(composite[pixel][3] == beauty[pixel][3] for pixel in range(len(beauty))), "the beauty's alpha is kept")
