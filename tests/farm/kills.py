@@ -70,8 +70,12 @@ class Kills:
             self.run(self.whole, [*evaluate[:-1], "e.npy", "--shard", shard + "/2"])
         self.seconds = {}
         for name, arguments in self.tasks.items():
-            begin = time.monotonic()
             self.run(self.whole, arguments)
+            timed = self.work / "disturbed"  # once more from nothing, but with kernels
+            shutil.rmtree(timed, ignore_errors=True)
+            timed.mkdir()
+            begin = time.monotonic()
+            self.run(timed, arguments)
             self.seconds[name] = time.monotonic() - begin
         self.expected = {path.name: path.read_bytes() for path in self.whole.iterdir()}
 
