@@ -37,7 +37,8 @@
 
 // Gauss-Legendre points for a Gaussian, times a Gaussian's integral up to a line of slope <= 1, on a range of
 // `range` standard deviations: their number and the first one's row. Over 10^5 random right triangles the
-// error is, of the Gaussian's integral, rms and at most: 3e-6 and 6e-5; 8e-5 and 1e-3; 1e-3 and 8e-3.
+// error is, of the Gaussian's integral, 3e-6 rms and 6e-5 at most by precision 0; of those as long as a rule
+// takes, by the worst of the rules, 1.5e-4 and 1.4e-3 by precision 1, 2.4e-3 and 1.2e-2 by precision 2.
 static inline int legendre_rule(float range, private int* count) {
 #if MICA_PRECISION == 0
   if (range <= 2.3f) return *count = 4, 5;
