@@ -185,7 +185,7 @@ SeenPoint BufferBlock::point_at(int row, int column) const {
 /// Without shadows, which the buffer knows of at the pixel itself.
 void BufferBlock::see_lamps(SeenPoint* point) const {
   if (!point->faces_eye) return;
-  viewer_.see_lamps({{0.5, 0.5}}, point);
+  viewer_.see_lamps({{0, 0}}, point);
   for (std::size_t n = 0; n < point->lamps.size(); ++n) {
     if (!view_.lamps[n].cone) continue;
     const double share = view_.lamps[n].cone->share(point->hit->position);
@@ -295,10 +295,9 @@ bool BufferBlock::all_see(int row, int column, std::size_t lamp) const {
 bool BufferBlock::ask_fit(const PixelFit& fitted, std::size_t lamp, const SeenPoint& point, double share,
                           const SamplePlace& place, RowQueries* queries) const {
   std::vector<GlintQuery> asked;
-  const FitLimits limits{pixels_.largest_residual, kMostParts};
+  const FitLimits limits{pixels_.tolerance, kMostParts};
   const FitLimits none{std::numeric_limits<double>::infinity(), kMostParts};
-  const Eigen::Matrix2d& change = pixels_.normal_change[point.material];
-  if (!fitted.ask(lamp, filter_, change, limits, &asked) && !fitted.ask(lamp, filter_, change, none, &asked))
+  if (!fitted.ask(lamp, filter_, limits, &asked) && !fitted.ask(lamp, filter_, none, &asked))
     return false;
   for (GlintQuery& query : asked) {
     query.pixel = place.pixel, query.sample = place.sample, query.material = point.material;

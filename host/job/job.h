@@ -15,7 +15,7 @@ namespace mica::host {
 
 struct ImageSettings {
   int width = 1280, height = 720;
-  FilterDescription filter;       ///< of pixels
+  FilterDescription filter{FilterKind::gaussian};  ///< of pixels
   int subpixels = 4;              ///< samples a pixel and axis, where one footprint will not do
   int samples = 16;               ///< directions a subpixel in which light from all around is gathered
   int max_bounces = 1;            ///< reflections of light on its way to the camera, at most

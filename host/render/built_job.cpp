@@ -16,9 +16,9 @@
 namespace mica::host {
 namespace {
 
-constexpr double kResidualOfTolerance =
-    150;                              // measured: FitLimits::residual of 1.5 keeps a relative L2 of 1%
 constexpr double kUnusedAlpha = 0.1;  // of materials that no shape has
+constexpr double kPixelOfPicture =
+    2;  // most pixels leave out far less than the worst, and all count in the mean square
 constexpr double kGoldenRatio =
     0.6180339887498949;  // whose multiples, less whole numbers, fill [0, 1) evenly
 
@@ -36,20 +36,6 @@ SmoothLobe lobe_of(const Surface& surface, double roughness) {
 void append_new(const std::vector<std::string>& lines, std::vector<std::string>* all) {
   for (const std::string& line : lines)
     if (std::find(all->begin(), all->end(), line) == all->end()) all->push_back(line);
-}
-
-/// E[(dn/du)' dn/du] over a map, per uv^2, from the differences of its texels.
-Eigen::Matrix2d normal_change(const Surface& surface) {
-  const int width = surface.width(), height = surface.height();
-  Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) {
-      Eigen::Matrix2d change;
-      change << surface.texel(x + 1, y) - surface.texel(x, y), surface.texel(x, y + 1) - surface.texel(x, y);
-      sum += change.transpose() * change;
-    }
-  const Eigen::Vector2d size(width, height);
-  return size.asDiagonal() * (sum / (size.x() * size.y())) * size.asDiagonal();
 }
 
 }  // namespace
@@ -232,18 +218,16 @@ PixelSettings BuiltJob::pixels() const {
   PixelSettings pixels;
   pixels.subpixels = job_.image.subpixels;
   pixels.filter = PixelFilter(job_.image.filter);
-  pixels.largest_residual = kResidualOfTolerance * job_.accuracy.tolerance;
+  pixels.tolerance = kPixelOfPicture * job_.accuracy.tolerance;
   // Lights gathered from all around are many directions a sample, and no one half vector.
   const bool may_fit = job_.image.filter.kind != FilterKind::subpixels && !plan_.gathers_light;
+  pixels.turns = may_fit;
   for (std::size_t n = 0; n < job_.scene.materials.size(); ++n) {
     const int evaluator = plan_.evaluator_of_material[n];
-    const bool takes = may_fit && evaluator >= 0 && surfaces_[evaluator] &&
-                       plan_.evaluators[evaluator].asks_densities &&
+    const bool takes = evaluator >= 0 && surfaces_[evaluator] && plan_.evaluators[evaluator].asks_densities &&
                        method_of(job_, plan_.evaluators[evaluator]).traits().first_order;
     pixels.takes_first_order.push_back(takes);
-    pixels.normal_change.push_back(takes ? normal_change(*surfaces_[evaluator])
-                                         : Eigen::Matrix2d(Eigen::Matrix2d::Zero()));
-    pixels.fits = pixels.fits || takes;
+    pixels.fits = pixels.fits || (may_fit && takes);
   }
   return pixels;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 
 #include "host/base/stopwatch.h"
 #include "host/render/built_job.h"
@@ -22,12 +23,20 @@ void append_some(const std::vector<Item>& row, std::size_t all, std::size_t targ
   for (std::size_t n = 0; n < row.size(); n += stride) items->push_back(row[n]);
 }
 
-/// Items of every block of rows, when each of `sampled` rows stands for as many around it.
-std::vector<double> items_of_blocks(const std::vector<std::size_t>& sampled, int rows_a_block, int height) {
+/// Of some rows of the picture that are traced together: what lies in them, and in the margins around them,
+/// whose samples their pixels see, too.
+struct ItemsOfRows {
+  double a_row = 0, in_margins = 0;
+};
+
+/// Items of every block of rows, when each of the sampled ones stands for as many around it.
+std::vector<double> items_of_blocks(const std::vector<ItemsOfRows>& sampled, int rows_a_block, int height) {
   std::vector<double> blocks;
   for (int row = 0; row < height; ++row) {
-    if (row % rows_a_block == 0) blocks.push_back(0);
-    blocks.back() += static_cast<double>(sampled[row * sampled.size() / height]);
+    const ItemsOfRows& items =
+        sampled[static_cast<std::size_t>(row) * sampled.size() / static_cast<std::size_t>(height)];
+    if (row % rows_a_block == 0) blocks.push_back(items.in_margins);
+    blocks.back() += items.a_row;
   }
   return blocks;
 }
@@ -48,7 +57,7 @@ double batch_bytes(Device& device, std::size_t items, const Evaluate& evaluate) 
 
 /// What gathering light in some rows takes.
 struct Gathered {
-  std::size_t queries = 0;
+  std::size_t points = 0, queries = 0;
   double seconds = 0, bytes_a_point = 0;
 };
 
@@ -74,7 +83,7 @@ Gathered measure_gathering(const BuiltJob& built, Device& device, const std::vec
   const Stopwatch watch;
   const std::size_t questions = gather();
   const double scale = static_cast<double>(all) / static_cast<double>(measured);
-  return {static_cast<std::size_t>(scale * static_cast<double>(questions)), scale * watch.seconds(),
+  return {all, static_cast<std::size_t>(scale * static_cast<double>(questions)), scale * watch.seconds(),
           bytes_a_point};
 }
 
@@ -90,23 +99,54 @@ double most_bytes_in_flight(const std::vector<double>& queries, double bytes_a_q
   return most;
 }
 
-/// Rows of the picture at equal distances, traced one by one.
+/// Rows of the picture at equal distances, a few together.
 struct SampledRows {
   std::vector<TracedRows> rows;
-  std::vector<std::size_t> queries, points;  ///< of every row
+  std::vector<ItemsOfRows> queries, points;  ///< of each
   std::size_t all_queries = 0;
-  double seconds = 0;
+  double rows_traced = 0, seconds = 0;  ///< with those in margins
 };
 
-SampledRows trace_samples(const Scene& scene, int height) {
+/// Samples of a block from the first of its own rows to the one after the last; kNone are pixels' own.
+class OwnSamples {
+ public:
+  explicit OwnSamples(const TracedRows& rows) {
+    const Lattice& lattice = rows.lattice;
+    const auto first_of = [&](int row) {
+      for (std::size_t cell = lattice.cell(row, -lattice.margin); cell < lattice.first_sample.size(); ++cell)
+        if (lattice.first_sample[cell] != Lattice::kNone) return lattice.first_sample[cell];
+      return Lattice::kNone;
+    };
+    first_ = first_of(0), end_ = first_of(rows.row_count);
+  }
+
+  template <typename Item>
+  ItemsOfRows count(const std::vector<Item>& items, int rows) const {
+    const auto own = std::count_if(items.begin(), items.end(), [&](const Item& item) {
+      return item.sample == Lattice::kNone || (item.sample >= first_ && item.sample < end_);
+    });
+    return {static_cast<double>(own) / rows, static_cast<double>(items.size()) - static_cast<double>(own)};
+  }
+
+ private:
+  std::uint32_t first_ = 0, end_ = 0;
+};
+
+SampledRows trace_samples(const Scene& scene, const Job& job) {
   SampledRows sampled;
-  const int count = std::min(kSampleRows, height);
+  const int margin = PixelFilter(job.image.filter).margin_pixels(), height = job.image.height;
+  const int together = std::min(margin > 0 ? 2 : 1, height), count = std::min(kSampleRows, height) / together;
   const Stopwatch tracing;
   for (int n = 0; n < count; ++n) {
-    const TracedRows& row = sampled.rows.emplace_back(scene.trace((2 * n + 1) * height / (2 * count), 1));
-    sampled.queries.push_back(row.queries.size());
-    sampled.points.push_back(row.points.size() + row.lit.size());
-    sampled.all_queries += row.queries.size();
+    const int middle = (2 * n + 1) * height / (2 * count);
+    const TracedRows& rows = sampled.rows.emplace_back(
+        scene.trace(std::clamp(middle - together / 2, 0, height - together), together));
+    const OwnSamples own(rows);
+    sampled.queries.push_back(own.count(rows.queries, together));
+    const ItemsOfRows points = own.count(rows.points, together), lit = own.count(rows.lit, together);
+    sampled.points.push_back({points.a_row + lit.a_row, points.in_margins + lit.in_margins});
+    sampled.all_queries += rows.queries.size();
+    sampled.rows_traced += together + 2 * margin;
   }
   sampled.seconds = tracing.seconds();
   return sampled;
@@ -138,25 +178,35 @@ Estimate estimate(const Job& job, const Plan& plan, Device& device) {
   const Stopwatch building;
   const BuiltJob built(job, plan, device);
   const double build_seconds = building.seconds();
-  const SampledRows sampled = trace_samples(built.scene(), job.image.height);
+  const SampledRows sampled = trace_samples(built.scene(), job);
   const Gathered gathered = measure_gathering(built, device, sampled.rows);
   const Evaluated evaluated = measure_densities(built, device, sampled);
 
-  const double scale = static_cast<double>(job.image.height) / static_cast<double>(sampled.rows.size());
-  // A CPU device takes turns with the tracing host, any other works beside it.
-  const double work = device.info().is_cpu ? sampled.seconds + evaluated.device_seconds
-                                           : std::max(sampled.seconds, evaluated.device_seconds);
-  const auto of_blocks = [&](const std::vector<std::size_t>& items) {
+  const auto of_blocks = [&](const std::vector<ItemsOfRows>& items) {
     return items_of_blocks(items, plan.rows_a_block, job.image.height);
   };
+  const std::vector<double> queries = of_blocks(sampled.queries);
   std::vector<double> points = of_blocks(sampled.points);
+  const auto sum = [](const std::vector<double>& all) {
+    return std::accumulate(all.begin(), all.end(), 0.0);
+  };
+  const auto share = [](double all, double some) { return some > 0 ? all / some : 0; };
+  const double all_queries = sum(queries);
+  const double of_device = share(all_queries, static_cast<double>(sampled.all_queries));
+  const double of_points = share(sum(points), static_cast<double>(gathered.points));
+  const int margin = PixelFilter(job.image.filter).margin_pixels();
+  const double rows = job.image.height + 2.0 * margin * static_cast<double>(queries.size());
+  const double tracing = sampled.seconds * rows / sampled.rows_traced;
+  const double evaluating = of_device * evaluated.device_seconds;
+  // A CPU device takes turns with the tracing host, any other works beside it.
+  const double work = device.info().is_cpu ? tracing + evaluating : std::max(tracing, evaluating);
   if (plan.gathers_light)  // in batches; see gather_light
     for (double& block : points)
       block = std::min(block, static_cast<double>(plan.queries_a_batch) / job.image.samples);
-  const double in_flight = most_bytes_in_flight(of_blocks(sampled.queries), evaluated.bytes_a_query, points,
-                                                gathered.bytes_a_point);
-  return {static_cast<std::size_t>(scale * static_cast<double>(sampled.all_queries + gathered.queries)),
-          build_seconds + scale * (work + gathered.seconds),
+  const double in_flight =
+      most_bytes_in_flight(queries, evaluated.bytes_a_query, points, gathered.bytes_a_point);
+  return {static_cast<std::size_t>(all_queries + of_points * static_cast<double>(gathered.queries)),
+          build_seconds + work + of_points * gathered.seconds,
           built.device_bytes() + static_cast<std::size_t>(in_flight),
           {built.notes(), built.warnings()}};
 }

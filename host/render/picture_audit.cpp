@@ -66,7 +66,6 @@ class Reference {
     pixels_.filter = PixelFilter(image.filter).for_reference(image.subpixels);
     for (const int evaluator : built.plan().evaluator_of_material) {
       pixels_.takes_first_order.push_back(evaluator >= 0 && made_[static_cast<std::size_t>(evaluator)]);
-      pixels_.normal_change.emplace_back(Eigen::Matrix2d::Zero());
     }
   }
 

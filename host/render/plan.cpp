@@ -8,6 +8,7 @@
 
 #include "host/scene/aovs.h"
 #include "host/scene/scene.h"
+#include "host/scene/shading.h"
 #include "host/surface/map_size.h"
 #include "kernels/types.h"
 #include "mica/error.h"
@@ -37,6 +38,12 @@ PlannedEvaluator plan_evaluator(const Job& job, int surface_index, int material_
   return planned;
 }
 
+/// Whether half vectors turn, or lamps make lobes longer one way.
+bool may_ask_first_order(const Job& job) {
+  return job.image.filter.kind != FilterKind::subpixels ||
+         std::any_of(job.scene.lights.begin(), job.scene.lights.end(), has_extent);
+}
+
 /// What the evaluator takes on the device, and its kernel.
 void plan_structure(const Job& job, PlannedEvaluator* planned) {
   const bool brdf = planned->patch_brdf || planned->gathers;
@@ -47,6 +54,8 @@ void plan_structure(const Job& job, PlannedEvaluator* planned) {
   planned->device_bytes = size.device_bytes;
   planned->host_bytes += size.host_bytes;
   planned->kernel = size.kernel;
+  if (planned->asks_densities && may_ask_first_order(job) && method_of(job, *planned).traits().first_order)
+    planned->kernel += fmt::format(", {} -DMICA_FIRST_ORDER=1", size.kernel);
 }
 
 /// Index of the evaluator that a material needs, planned now if it is the first to need it.

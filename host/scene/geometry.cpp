@@ -146,6 +146,14 @@ void set_ray(RTCRay* to, const Eigen::Vector3d& origin, const Eigen::Vector3d& d
   to->flags = 0;
 }
 
+void put_ray(const RTCRay& ray, std::size_t n, RTCRay16* packet) {
+  packet->org_x[n] = ray.org_x, packet->org_y[n] = ray.org_y, packet->org_z[n] = ray.org_z;
+  packet->dir_x[n] = ray.dir_x, packet->dir_y[n] = ray.dir_y, packet->dir_z[n] = ray.dir_z;
+  packet->tnear[n] = ray.tnear, packet->tfar[n] = ray.tfar;
+  packet->time[n] = ray.time, packet->mask[n] = ray.mask;
+  packet->id[n] = ray.id, packet->flags[n] = ray.flags;
+}
+
 struct ExactHit {
   const Ray& ray;
   const RTCRayHit& found;
@@ -336,6 +344,31 @@ bool Geometry::occluded(const Hit& hit, const Eigen::Vector3d& direction, double
   rtcInitIntersectContext(&context);
   rtcOccluded1(implementation_->scene.get(), &context, &ray);
   return ray.tfar < 0;
+}
+
+std::size_t Geometry::count_open(const Hit& hit, const std::vector<ShadowRay>& rays) const {
+  constexpr std::size_t packet = 16;
+  if (rays.size() == 1) return occluded(hit, rays[0].direction, rays[0].distance) ? 0 : 1;
+  std::size_t open = 0;
+  for (std::size_t first = 0; first < rays.size(); first += packet) {
+    RTCRay16 together;
+    alignas(64) int valid[packet];
+    for (std::size_t n = 0; n < packet; ++n) {
+      // Lanes beyond the end repeat the last ray, and are not asked.
+      const ShadowRay& to_light = rays[std::min(first + n, rays.size() - 1)];
+      RTCRay ray;
+      set_ray(&ray, ray_from(hit, to_light.direction).origin - implementation_->middle, to_light.direction,
+              to_light.distance);
+      put_ray(ray, n, &together);
+      valid[n] = first + n < rays.size() ? -1 : 0;
+    }
+    // Not said to be coherent: Embree 3.13 may then never return from instances.
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded16(valid, implementation_->scene.get(), &context, &together);
+    for (std::size_t n = 0; n < packet; ++n) open += valid[n] && !(together.tfar[n] < 0);
+  }
+  return open;
 }
 
 }  // namespace mica::host

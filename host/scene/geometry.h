@@ -32,6 +32,9 @@ class Geometry {
   /// to which that direction points.
   bool occluded(const Hit& hit, const Eigen::Vector3d& direction, double distance) const;
 
+  /// How many of some rays are not.
+  std::size_t count_open(const Hit& hit, const std::vector<ShadowRay>& rays) const;
+
  private:
   struct Implementation;
   std::unique_ptr<Implementation> implementation_;

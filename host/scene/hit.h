@@ -28,6 +28,12 @@ struct Hit {
   std::uint32_t part = 0;       ///< which part of the shape was hit, by Geometry::parts
 };
 
+/// From a hit, on the side of the surface to which it points.
+struct ShadowRay {
+  Eigen::Vector3d direction;  ///< unit
+  double distance;
+};
+
 /// What is left of a number after some 30 roundings to single precision.
 constexpr double kRelativeError = 4e-6;
 

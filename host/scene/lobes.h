@@ -11,6 +11,7 @@ struct LobesSeen {
   Eigen::Vector3d to_eye, to_light;  ///< unit, below the coat where there is one
   Eigen::Vector3d half_vector;       ///< of these: at which the P-NDF is asked for
   double roughness;                  ///< roughness of that query, with the light's extent
+  Eigen::Matrix3d half_vector_cov;   ///< by the light's extent alone
   Color mirrored;                    ///< Fresnel's factor of the base, and what the coat leaves of it
   Color glint_weight;                ///< that and Smith's masking: what the P-NDF is multiplied with
 };

@@ -17,6 +17,13 @@ using Values = FitStencil::Values;
 constexpr double kMaxCondition = 50;  // of uv over the pixel; footprints of more than 100 are shortened
 constexpr double kWholePeriod = 0.5;  // sigma in periods from which on place says nothing of the normal
 
+double variance_of(const FilterSum& filter) {
+  double variance = filter.sigma_pixels * filter.sigma_pixels;
+  for (std::size_t n = 0; n < filter.weights.size(); ++n)
+    variance += filter.weights[n] * filter.offsets_pixels[n] * filter.offsets_pixels[n];
+  return variance;
+}
+
 }  // namespace
 
 Probe probe_of(const SeenPoint& point) {
@@ -29,10 +36,11 @@ Probe probe_of(const SeenPoint& point) {
   probe.uv = point.uv, probe.duv = point.duv;
   probe.normal = point.frame.z;
   for (const SeenLamp& lamp : point.lamps)
-    probe.lamps.push_back({lamp.is_above, lamp.visible, lamp.half_vector, lamp.seen.roughness,
+    probe.lamps.push_back({lamp.is_above, lamp.visible, lamp.half_vector, lamp.seen.roughness, lamp.lobe_cov,
                            lamp.visible > 0
                                ? Color(lamp.seen.glint_weight.cwiseProduct(lamp.incident.irradiance))
-                               : Color(Color::Zero())});
+                               : Color(Color::Zero()),
+                           lamp.weight_unshadowed});
   return probe;
 }
 
@@ -99,13 +107,10 @@ UvSteps repeating_steps(const FitStencil& stencil, const ProbesOfFit& probes) {
 
 PixelFit::PixelFit(const FitStencil& stencil, const ProbesOfFit& probes, const UvSteps& steps)
     : stencil_(stencil), probes_(probes) {
-  Values u = stencil.zeros(), v = u, u_residual, v_residual;
+  Values u = stencil.zeros(), v = u;
   for (std::size_t n = 0; n < stencil.size(); ++n)
     u[static_cast<Eigen::Index>(n)] = steps[n].x(), v[static_cast<Eigen::Index>(n)] = steps[n].y();
-  u_ = stencil.fit(u, &u_residual), v_ = stencil.fit(v, &v_residual);
-  uv_residual2_uu_ = stencil.mean_product(u_residual, u_residual);
-  uv_residual2_uv_ = stencil.mean_product(u_residual, v_residual);
-  uv_residual2_vv_ = stencil.mean_product(v_residual, v_residual);
+  u_ = stencil.fit(u, &u_residual_), v_ = stencil.fit(v, &v_residual_);
 }
 
 Color PixelFit::radiance(const FilterSum& filter) const {
@@ -127,9 +132,7 @@ Color PixelFit::radiance(const FilterSum& filter) const {
 }
 
 Footprint PixelFit::footprint(const FilterSum& filter) const {
-  double variance = filter.sigma_pixels * filter.sigma_pixels;
-  for (std::size_t n = 0; n < filter.weights.size(); ++n)
-    variance += filter.weights[n] * filter.offsets_pixels[n] * filter.offsets_pixels[n];
+  const double variance = variance_of(filter);
   const Eigen::Matrix2d cov = variance * Eigen::Matrix2d::Identity();
   Eigen::Matrix2d duv;
   duv << u_.slope.transpose(), v_.slope.transpose();
@@ -151,59 +154,69 @@ double PixelFit::penumbra_residual(std::size_t lamp) const {
 }
 
 PixelFit::LampFit PixelFit::fit_lamp(std::size_t lamp) const {
-  Values s = stencil_.zeros(), t = s, red = s, green = s, blue = s, s_residual, t_residual;
+  Values s = stencil_.zeros(), t = s, red = s, green = s, blue = s, unshadowed = s;
   for (std::size_t n = 0; n < stencil_.size(); ++n) {
     const Probe::Lamp& seen = probes_[n]->lamps[lamp];
     const auto k = static_cast<Eigen::Index>(n);
     s[k] = seen.half_vector.x(), t[k] = seen.half_vector.y();
     red[k] = seen.weight.x(), green[k] = seen.weight.y(), blue[k] = seen.weight.z();
+    unshadowed[k] = seen.weight_unshadowed;
   }
   LampFit fitted;
-  fitted.s = stencil_.fit(s, &s_residual), fitted.t = stencil_.fit(t, &t_residual);
+  fitted.s = stencil_.fit(s, &fitted.s_residual), fitted.t = stencil_.fit(t, &fitted.t_residual);
   fitted.red = stencil_.fit(red), fitted.green = stencil_.fit(green), fitted.blue = stencil_.fit(blue);
+  fitted.unshadowed = stencil_.fit(unshadowed, &fitted.unshadowed_residual);
   fitted.roughness = probes_[0]->lamps[lamp].roughness;
-  fitted.residual2 =
-      stencil_.mean_product(s_residual, s_residual) + stencil_.mean_product(t_residual, t_residual);
+  fitted.lobe_cov = probes_[0]->lamps[lamp].lobe_cov;
   return fitted;
 }
 
-/// E[|n(u) - h - H (u - c)|^2] over a Gaussian is half the trace of this: what the second order of place and
-/// half vector adds, by direction in the coordinates in which the Gaussian is round.
-Eigen::Matrix2d PixelFit::second_order(const LampFit& lamp, const Eigen::Matrix2d& normal_change,
-                                       const Eigen::Matrix2d& cov) const {
-  const Eigen::Matrix2d root = cholesky_factor(cov);
-  const auto round = [&](const Quadratic& q) -> Eigen::Matrix2d { return root.transpose() * q.turn * root; };
-  const Eigen::Matrix2d u = round(u_), v = round(v_), s = round(lamp.s), t = round(lamp.t);
-  return s * s + t * t + normal_change(0, 0) * u * u + normal_change(1, 1) * v * v +
-         normal_change(0, 1) * (u * v + v * u);
+std::optional<PixelFit::Frame> PixelFit::frame_of(const Gaussian& part, const LampFit& lamp) const {
+  Frame frame;
+  frame.root = cholesky_factor(part.cov);
+  Eigen::Matrix2d duv, dh;
+  duv << u_.slope_at(part.mean).transpose(), v_.slope_at(part.mean).transpose();
+  dh << lamp.s.slope_at(part.mean).transpose(), lamp.t.slope_at(part.mean).transpose();
+  frame.axes = duv * frame.root;
+  const double determinant = std::abs(frame.axes.determinant()), square = frame.axes.squaredNorm();
+  if (!(determinant * kMaxCondition > square)) return std::nullopt;
+  frame.turn = dh * duv.inverse();
+  const auto round = [&](const Quadratic& q) -> Eigen::Matrix2d {
+    return frame.root.transpose() * q.turn * frame.root;
+  };
+  const Eigen::Matrix2d inverse = frame.axes.inverse(), u = round(u_), v = round(v_);
+  const Quadratic* const h[2] = {&lamp.s, &lamp.t};
+  for (int row = 0; row < 2; ++row) {
+    frame.bend.of_uv[row] = inverse(row, 0) * u + inverse(row, 1) * v;
+    frame.bend.of_h[row] = round(*h[row]) - frame.turn(row, 0) * u - frame.turn(row, 1) * v;
+  }
+  const double weight = lamp.unshadowed.mean(part.mean, Eigen::Matrix2d::Zero());
+  const Eigen::Vector2d slope = frame.root.transpose() * lamp.unshadowed.slope_at(part.mean) / weight;
+  frame.bend.of_log_weight = round(lamp.unshadowed) / weight - slope * slope.transpose();
+  return frame;
 }
 
-/// Where a footprint lies best, in the coordinates in which `part` is round. To the first order the weight is
-/// exp(a y), and uv bend by q: the footprint is G(y) (1 + a y + y' q(y, y) y / 2 - div q y), which is no
-/// Gaussian any more; of all that move it this one is nearest in the mean square over the plane, where
-/// glints lie anywhere.
-Eigen::Vector2d PixelFit::best_shift(const Eigen::Matrix2d& axes, const Eigen::Matrix2d& root,
-                                     const Eigen::Vector2d& log_weight_slope) const {
-  const Eigen::Matrix2d inverse = axes.inverse();
-  const Eigen::Matrix2d u = root.transpose() * u_.turn * root, v = root.transpose() * v_.turn * root;
-  const Eigen::Matrix2d bend[2] = {inverse(0, 0) * u + inverse(0, 1) * v,
-                                   inverse(1, 0) * u + inverse(1, 1) * v};
-  const Eigen::Vector2d divergence = bend[0].row(0).transpose() + bend[1].row(1).transpose();
-  const Eigen::Vector2d laplacian(bend[0].trace(), bend[1].trace());
-  return root.transpose() * log_weight_slope - 0.5 * divergence + 0.25 * laplacian;
+/// The square of the relative L2 by which Gaussians of all of the filter differ from it for what is not even
+/// of second order: as places that are moved, and as half vectors.
+double PixelFit::third_order(const LampFit& lamp, const Frame& frame) const {
+  const Eigen::Matrix2d inverse = frame.axes.inverse(), &turn = frame.turn;
+  const double weight = lamp.unshadowed.value;
+  double square =
+      stencil_.mean_product(lamp.unshadowed_residual, lamp.unshadowed_residual) / (weight * weight);
+  for (int row = 0; row < 2; ++row) {
+    const Values moved = inverse(row, 0) * u_residual_ + inverse(row, 1) * v_residual_;
+    const Values turned = (row == 0 ? lamp.s_residual : lamp.t_residual) - turn(row, 0) * u_residual_ -
+                          turn(row, 1) * v_residual_;
+    square += stencil_.mean_product(moved, moved) +
+              0.5 * stencil_.mean_product(turned, turned) / (lamp.roughness * lamp.roughness);
+  }
+  return square;
 }
 
-bool PixelFit::query_of(const Gaussian& part, const LampFit& lamp, GlintQuery* query) const {
+bool PixelFit::query_of(const Gaussian& part, const Frame& frame, const LampFit& lamp,
+                        GlintQuery* query) const {
   constexpr double most_shift = 0.3;  // standard deviations: beyond it the first order is none
   const Eigen::Vector2d& mean = part.mean;
-  const Eigen::Matrix2d root = cholesky_factor(part.cov);
-  Eigen::Matrix2d duv, dh;
-  duv << u_.slope_at(mean).transpose(), v_.slope_at(mean).transpose();
-  dh << lamp.s.slope_at(mean).transpose(), lamp.t.slope_at(mean).transpose();
-  const Eigen::Matrix2d axes = duv * root;
-  const double determinant = std::abs(axes.determinant()), square = axes.squaredNorm();
-  if (!(determinant * kMaxCondition > square)) return false;
-
   const Color weight(lamp.red.mean(mean, part.cov), lamp.green.mean(mean, part.cov),
                      lamp.blue.mean(mean, part.cov));
   if (!(weight.sum() > 0)) {  // where a penumbra ends
@@ -212,44 +225,45 @@ bool PixelFit::query_of(const Gaussian& part, const LampFit& lamp, GlintQuery* q
   }
   const Eigen::Vector2d weight_slope =
       lamp.red.slope_at(mean) + lamp.green.slope_at(mean) + lamp.blue.slope_at(mean);
-  const Eigen::Vector2d shift = best_shift(axes, root, weight_slope / weight.sum());
+  const Eigen::Vector2d shift = best_shift(frame.bend, frame.root.transpose() * weight_slope / weight.sum());
   if (!(shift.norm() < most_shift)) return false;
 
   Query& asked = query->query;
-  const Eigen::Matrix2d none = Eigen::Matrix2d::Zero(), turn = dh * duv.inverse();
-  const Eigen::Vector2d uv = Eigen::Vector2d(u_.mean(mean, none), v_.mean(mean, none)) + axes * shift;
-  asked.footprint = {wrap(probes_[0]->uv + uv), footprint_covariance(axes, 1)};
+  const Eigen::Matrix2d none = Eigen::Matrix2d::Zero();
+  const Eigen::Vector2d moved = frame.axes * shift;
+  const Eigen::Vector2d uv = Eigen::Vector2d(u_.mean(mean, none), v_.mean(mean, none)) + moved;
+  asked.footprint = {wrap(probes_[0]->uv + uv), footprint_covariance(frame.axes, 1)};
   // Of the second order of h(u) half its mean: glints see the square of the Gaussian.
   const auto half_vector = [&](const Quadratic& h, int row) {
-    const Eigen::Matrix2d bend = h.turn - turn(row, 0) * u_.turn - turn(row, 1) * v_.turn;
-    return h.mean(mean, none) + dh.row(row).dot(root * shift) + 0.25 * (bend * part.cov).trace();
+    return h.mean(mean, none) + frame.turn.row(row).dot(moved) + 0.25 * frame.bend.of_h[row].trace();
   };
   asked.half_vector = {half_vector(lamp.s, 0), half_vector(lamp.t, 1)};
   if (!(asked.half_vector.squaredNorm() < 1)) return false;
   asked.roughness = lamp.roughness;
-  asked.half_vector_turn.setZero(), asked.lobe_cov.reset();
-  const Eigen::Matrix2d spread = dh * part.cov * dh.transpose();
+  asked.half_vector_turn.setZero(), asked.lobe_cov = lamp.lobe_cov;
+  const Eigen::Matrix2d across = frame.turn * frame.axes, spread = across * across.transpose();
   if (spread.trace() > kLeastTurn * kLeastTurn * lamp.roughness * lamp.roughness) {
     if (asked.footprint.cov_uv.trace() > kWholePeriod * kWholePeriod) {
-      Eigen::Matrix2d lobe = lamp.roughness * lamp.roughness * Eigen::Matrix2d::Identity() + spread;
+      const Eigen::Matrix2d round = lamp.roughness * lamp.roughness * Eigen::Matrix2d::Identity();
+      Eigen::Matrix2d lobe = lamp.lobe_cov.value_or(round) + spread;
       lobe(1, 0) = lobe(0, 1);
       asked.lobe_cov = lobe;
     } else {
-      asked.half_vector_turn = turn;
+      asked.half_vector_turn = frame.turn;
     }
   }
   query->weight = (part.weight * weight.cwiseMax(0)).cast<float>();
   return true;
 }
 
-bool PixelFit::ask(std::size_t lamp, const FilterSum& filter, const Eigen::Matrix2d& normal_change,
-                   const FitLimits& limits, std::vector<GlintQuery>* queries) const {
+bool PixelFit::ask(std::size_t lamp, const FilterSum& filter, const FitLimits& limits,
+                   std::vector<GlintQuery>* queries) const {
   const LampFit fitted = fit_lamp(lamp);
-  const double limit2 = std::pow(limits.residual * fitted.roughness, 2);
-  const double third_order2 = fitted.residual2 + normal_change(0, 0) * uv_residual2_uu_ +
-                              2 * normal_change(0, 1) * uv_residual2_uv_ +
-                              normal_change(1, 1) * uv_residual2_vv_;
-  if (!(third_order2 <= limit2)) return false;
+  const std::optional<Frame> whole =
+      frame_of({{0, 0}, variance_of(filter) * Eigen::Matrix2d::Identity(), 1}, fitted);
+  if (!whole) return false;
+  const double limit2 = std::pow(limits.relative_l2, 2) - third_order(fitted, *whole);
+  if (!(limit2 >= 0)) return false;
 
   std::vector<Gaussian> parts;
   const Eigen::Matrix2d round = filter.sigma_pixels * filter.sigma_pixels * Eigen::Matrix2d::Identity();
@@ -264,24 +278,24 @@ bool PixelFit::ask(std::size_t lamp, const FilterSum& filter, const Eigen::Matri
       return false;
     const Gaussian part = parts.back();
     parts.pop_back();
-    const Eigen::Matrix2d second = second_order(fitted, normal_change, part.cov);
-    const double square = 0.5 * second.trace();
-    if (square <= limit2) {
+    const std::optional<Frame> frame = frame_of(part, fitted);
+    if (!frame) return false;
+    const Eigen::Matrix2d missed = left_out(frame->bend, fitted.roughness);
+    if (missed.trace() <= limit2) {
       GlintQuery query;
       query.light = static_cast<std::uint32_t>(lamp);
-      if (!query_of(part, fitted, &query)) return false;
+      if (!query_of(part, *frame, fitted, &query)) return false;
       asked.push_back(query);
       continue;
     }
-    // Along the direction that bends most: along it alone its share falls with sigma^4.
-    const PrincipalAxes axes = principal_axes(second);
+    // Along the direction that bends most, whose share falls with sigma^2 at least.
+    const PrincipalAxes axes = principal_axes(missed);
     const auto& splits = gaussian_splits();
     const auto enough = std::find_if(splits.begin(), splits.end(), [&](const GaussianSplit& split) {
-      return 0.5 * (axes.eigenvalues[0] + axes.eigenvalues[1] * std::pow(split.sigma, 4)) <= limit2;
+      return axes.eigenvalues[0] + axes.eigenvalues[1] * split.sigma * split.sigma <= limit2;
     });
     const GaussianSplit& split = enough == splits.end() ? splits.back() : *enough;
-    const Eigen::Matrix2d root = cholesky_factor(part.cov);
-    const Eigen::Vector2d axis = root * axes.eigenvectors.col(1);
+    const Eigen::Vector2d axis = frame->root * axes.eigenvectors.col(1);
     const Eigen::Matrix2d cov = part.cov - (1 - split.sigma * split.sigma) * axis * axis.transpose();
     for (std::size_t n = 0; n < split.parts.weights.size(); ++n)
       parts.push_back(

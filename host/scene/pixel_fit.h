@@ -3,9 +3,11 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "host/scene/pixel_filter.h"
+#include "host/scene/second_order.h"
 #include "host/scene/viewer.h"
 
 namespace mica::host {
@@ -21,7 +23,9 @@ struct Probe {
     double visible = 0;     ///< as SeenLamp
     Eigen::Vector2d half_vector{0, 0};
     double roughness = 0;
-    Color weight = Color::Zero();  ///< radiance per unit of D, of what is visible
+    std::optional<Eigen::Matrix2d> lobe_cov;  ///< as SeenLamp
+    Color weight = Color::Zero();             ///< radiance per unit of D, of what is visible
+    double weight_unshadowed = 0;             ///< as SeenLamp
   };
   std::uint64_t surface = kNothing;  ///< the same number on a shape's part
   std::uint32_t material = 0;
@@ -76,11 +80,10 @@ class FitStencil {
   Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, kMost> solve_;
 };
 
-/// How far one Gaussian may be from the place and the half vector that it stands for, in standard deviations
-/// of the lobe, in the mean square: of the normals that the map shows there.
+/// How far the Gaussians that stand for a pixel may be from it.
 struct FitLimits {
-  double residual = 0.1;
-  int most_parts = 16;  ///< of a pixel and lamp
+  double relative_l2 = 0.01;  ///< of what a lamp's glints show, over pixels alike
+  int most_parts = 16;        ///< of a pixel and lamp, for each Gaussian of its filter along an axis
 };
 
 /// What a pixel's fit knows, by place of its stencil.
@@ -92,8 +95,9 @@ using UvSteps = std::array<Eigen::Vector2d, FitStencil::kMost>;
 UvSteps repeating_steps(const FitStencil& stencil, const ProbesOfFit& probes);
 
 /// A pixel whose filter lies on one surface, by a least-squares fit of second order to what its stencil
-/// finds. Of uv and the half vectors the first order goes into the queries; the second one, times the
-/// normals' change, says how far these are from the truth, and splits them where that is too far.
+/// finds. The first order goes into the queries: D as an integral over uv takes the map's normals as they
+/// are, so that all it can miss is how the filter lies on uv and how half vectors turn with them. The second
+/// order says how much that is, and splits the filter where it is too much.
 class PixelFit {
  public:
   /// @param stencil has to outlive it. @param probes on one surface, facing the eye, or all on none.
@@ -110,31 +114,37 @@ class PixelFit {
   double penumbra_residual(std::size_t lamp) const;
 
   /// Queries for a lamp that is above the horizon in all of the pixel, or false where they would not do.
-  /// @param normal_change E[(dn/du)' dn/du] of the map, per uv^2.
-  bool ask(std::size_t lamp, const FilterSum& filter, const Eigen::Matrix2d& normal_change,
-           const FitLimits& limits, std::vector<GlintQuery>* queries) const;
+  bool ask(std::size_t lamp, const FilterSum& filter, const FitLimits& limits,
+           std::vector<GlintQuery>* queries) const;
 
  private:
+  using Values = FitStencil::Values;
   struct Gaussian {
     Eigen::Vector2d mean;
     Eigen::Matrix2d cov;
     double weight;
   };
   struct LampFit {
-    Quadratic s, t, red, green, blue;
-    double roughness, residual2;  ///< of s and t, in the mean square
+    Quadratic s, t, red, green, blue, unshadowed;
+    double roughness;
+    std::optional<Eigen::Matrix2d> lobe_cov;
+    Values s_residual, t_residual, unshadowed_residual;
+  };
+  /// A part of the filter to the first order, in the coordinates in which it is round.
+  struct Frame {
+    Eigen::Matrix2d root, axes;  ///< of pixels and of uv
+    Eigen::Matrix2d turn;        ///< dh/du
+    SecondOrder bend;
   };
   LampFit fit_lamp(std::size_t lamp) const;
-  Eigen::Matrix2d second_order(const LampFit& lamp, const Eigen::Matrix2d& normal_change,
-                               const Eigen::Matrix2d& cov) const;
-  Eigen::Vector2d best_shift(const Eigen::Matrix2d& axes, const Eigen::Matrix2d& root,
-                             const Eigen::Vector2d& log_weight_slope) const;
-  bool query_of(const Gaussian& part, const LampFit& lamp, GlintQuery* query) const;
+  std::optional<Frame> frame_of(const Gaussian& part, const LampFit& lamp) const;
+  double third_order(const LampFit& lamp, const Frame& frame) const;
+  bool query_of(const Gaussian& part, const Frame& frame, const LampFit& lamp, GlintQuery* query) const;
 
   const FitStencil& stencil_;
   ProbesOfFit probes_;
   Quadratic u_, v_;
-  double uv_residual2_uu_ = 0, uv_residual2_uv_ = 0, uv_residual2_vv_ = 0;
+  Values u_residual_, v_residual_;
 };
 
 }  // namespace mica::host

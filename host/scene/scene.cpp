@@ -50,7 +50,6 @@ void complete(PixelSettings* pixels, std::size_t materials) {
   if (pixels->subpixels < 1 || pixels->subpixels > 16)
     throw UsageError(fmt::format("subpixels: found {}, expected 1 to 16", pixels->subpixels));
   pixels->takes_first_order.resize(materials, false);
-  pixels->normal_change.resize(materials, Eigen::Matrix2d::Zero());
 }
 
 }  // namespace

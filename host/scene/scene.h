@@ -61,10 +61,10 @@ void add_samples(const TracedRows& rows, const std::vector<Eigen::Vector3d>& sam
 struct PixelSettings {
   int subpixels = 4;  ///< samples a pixel and axis, 1..16, where one footprint will not do
   PixelFilter filter = PixelFilter({});
-  bool fits = false;                           ///< pixels may be fitted; else all are sums of samples
-  std::vector<bool> takes_first_order;         ///< a material: queries have their half vector's turn
-  std::vector<Eigen::Matrix2d> normal_change;  ///< a material: E[(dn/du)' dn/du] of its map, per uv^2
-  double largest_residual = 0.1;               ///< of a fit, see FitLimits
+  bool fits = false;                    ///< pixels may be fitted; else all are sums of samples
+  std::vector<bool> takes_first_order;  ///< a material: queries may turn, and have lobes that are not round
+  bool turns = true;                    ///< half vectors do, over samples; fits always turn them
+  double tolerance = 0.01;              ///< of fits, see FitLimits::relative_l2
 };
 
 /// What a scene hands out for the lights that are gathered by sampling directions.

@@ -12,6 +12,11 @@
 namespace mica::host {
 namespace {
 
+/// What of a vector is perpendicular to a unit one.
+Eigen::Matrix3d across(const Eigen::Vector3d& unit) {
+  return Eigen::Matrix3d::Identity() - unit * unit.transpose();
+}
+
 struct Illuminate {
   const Eigen::Vector3d& position;
 
@@ -23,9 +28,10 @@ struct Illuminate {
     return {to_light / distance, distance, light.intensity / distance2};
   }
   Illumination operator()(const DirectionalLight& light) const {
-    const double sine = std::sin(light.angular_radius);
-    return {-light.direction.normalized(), std::numeric_limits<double>::infinity(), light.irradiance,
-            sine * sine / 4};
+    const double sine = std::sin(light.angular_radius), variance = sine * sine / 4;
+    const Eigen::Vector3d direction = -light.direction.normalized();
+    return {direction, std::numeric_limits<double>::infinity(), light.irradiance, variance,
+            variance * across(direction)};
   }
   Illumination operator()(const SphereLight& light) const {
     Illumination seen = (*this)(PointLight{light.position, light.intensity});
@@ -33,6 +39,7 @@ struct Illuminate {
     // A disk of angular radius a has a variance of a^2 / 4 an axis.
     const double sine = light.radius / seen.distance;
     seen.variance = sine * sine / 4;
+    seen.cov = seen.variance * across(seen.direction);
     seen.distance -= light.radius;
     return seen;
   }
@@ -44,12 +51,12 @@ struct Illuminate {
     const Eigen::Vector3d axis = light.direction.normalized(), from_center = position - light.position;
     const double height = from_center.dot(axis);
     if (!(height > 0)) return {-axis, 0, Color::Zero()};  // behind it
-    const Eigen::Vector3d across = from_center - height * axis;
+    const Eigen::Vector3d aside = from_center - height * axis;
     const double sum = light.radius * light.radius + from_center.squaredNorm();
     const double root =
-        std::sqrt(std::max(0.0, sum * sum - 4 * light.radius * light.radius * across.squaredNorm()));
+        std::sqrt(std::max(0.0, sum * sum - 4 * light.radius * light.radius * aside.squaredNorm()));
     const Eigen::Vector3d vector =
-        (-(1 - 2 * across.squaredNorm() / (sum + root)) * axis - 2 * height / (sum + root) * across) / root;
+        (-(1 - 2 * aside.squaredNorm() / (sum + root)) * axis - 2 * height / (sum + root) * aside) / root;
     Illumination seen;
     seen.direction = vector.normalized();
     seen.distance = height / -seen.direction.dot(axis);
@@ -57,47 +64,37 @@ struct Illuminate {
     // Foreshortened along one axis: the mean of both. Near by it fills no more than the sky.
     const double cosine2 = height * height / from_center.squaredNorm();
     const double tangent2 = light.radius * light.radius / from_center.squaredNorm();
-    seen.variance = tangent2 / (1 + tangent2) / 4 * (1 + cosine2) / 2;
+    const double facing = tangent2 / (1 + tangent2) / 4;
+    seen.variance = facing * (1 + cosine2) / 2;
+    seen.cov = facing * across(seen.direction) * across(axis) * across(seen.direction);
     return seen;
   }
 };
 
-/// Uniform on the unit disk, from the unit square. [Shirley97]: Peter Shirley and Kenneth Chiu, "A Low
-/// Distortion Map Between Disk and Square", Journal of Graphics Tools 2(3), 1997.
-Eigen::Vector2d on_unit_disk(const Eigen::Vector2d& sample) {
-  constexpr double quarter = kPi / 4;
-  const double x = 2 * sample.x() - 1, y = 2 * sample.y() - 1;
-  if (x == 0 && y == 0) return {0, 0};
-  const bool wide = std::abs(x) > std::abs(y);
-  const double radius = wide ? x : y, angle = wide ? quarter * y / x : 2 * quarter - quarter * x / y;
-  return {radius * std::cos(angle), radius * std::sin(angle)};
-}
-
-struct MakeLightRay {
+/// The middle of a light from a place, and the axes of the disk that it is.
+struct DiskFrom {
   const Eigen::Vector3d& position;
-  const Eigen::Vector2d& sample;
+  struct Disk {
+    Eigen::Vector3d middle, x, y;
+  };
 
-  LightRay operator()(const PointLight& light) const { return towards(light.position); }
-  LightRay operator()(const DirectionalLight& light) const {
-    return {-light.direction.normalized(), std::numeric_limits<double>::infinity()};
+  Disk operator()(const PointLight& light) const { return {light.position - position, none(), none()}; }
+  Disk operator()(const DirectionalLight& light) const {
+    return {-light.direction.normalized(), none(), none()};
   }
-  /// To the disk that is the sphere's outline.
-  LightRay operator()(const SphereLight& light) const {
-    return towards_disk(light.position, light.position - position, light.radius);
+  /// The disk that is the sphere's outline.
+  Disk operator()(const SphereLight& light) const {
+    return disk(light.position, light.position - position, light.radius);
   }
-  LightRay operator()(const DiskLight& light) const {
-    return towards_disk(light.position, light.direction, light.radius);
+  Disk operator()(const DiskLight& light) const {
+    return disk(light.position, light.direction, light.radius);
   }
 
  private:
-  LightRay towards_disk(const Eigen::Vector3d& center, const Eigen::Vector3d& axis, double radius) const {
-    const Eigen::Vector3d z = axis.normalized(), x = z.unitOrthogonal(), y = z.cross(x);
-    const Eigen::Vector2d offset = radius * on_unit_disk(sample);
-    return towards(center + offset.x() * x + offset.y() * y);
-  }
-  LightRay towards(const Eigen::Vector3d& point) const {
-    const Eigen::Vector3d to_light = point - position;
-    return {to_light.stableNormalized(), to_light.norm()};
+  static Eigen::Vector3d none() { return Eigen::Vector3d::Zero(); }
+  Disk disk(const Eigen::Vector3d& center, const Eigen::Vector3d& axis, double radius) const {
+    const Eigen::Vector3d z = axis.normalized(), x = z.unitOrthogonal();
+    return {center - position, radius * x, radius * z.cross(x)};
   }
 };
 
@@ -133,9 +130,16 @@ bool has_extent(const LightDescription& light) {
   return false;
 }
 
-LightRay light_ray(const LightDescription& light, const Eigen::Vector3d& position,
-                   const Eigen::Vector2d& sample) {
-  return std::visit(MakeLightRay{position, sample}, light);
+ShadowRays::ShadowRays(const LightDescription& light, const Eigen::Vector3d& position)
+    : is_far_(std::holds_alternative<DirectionalLight>(light)) {
+  const DiskFrom::Disk disk = std::visit(DiskFrom{position}, light);
+  middle_ = disk.middle, x_ = disk.x, y_ = disk.y;
+}
+
+ShadowRay ShadowRays::to(const Eigen::Vector2d& on_disk) const {
+  const Eigen::Vector3d to_light = middle_ + on_disk.x() * x_ + on_disk.y() * y_;
+  if (is_far_) return {to_light, std::numeric_limits<double>::infinity()};
+  return {to_light.stableNormalized(), to_light.norm()};
 }
 
 double half_vector_variance(double light_variance, double cos_d) {

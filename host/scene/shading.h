@@ -31,6 +31,7 @@ struct Illumination {
   double distance;            ///< to the light; infinite for directional ones
   Color irradiance;           ///< on a surface that faces the light
   double variance = 0;        ///< variance an axis of the directions in which the light is seen, radians^2
+  Eigen::Matrix3d cov = Eigen::Matrix3d::Zero();  ///< of these directions, across the middle one
 };
 Illumination illuminate(const LightDescription& light, const Eigen::Vector3d& position);
 
@@ -45,14 +46,18 @@ struct BounceFresnel {
 /// Whether a light is more than a point or a direction, so that its shadows have penumbras.
 bool has_extent(const LightDescription& light);
 
-/// Where a shadow ray goes: to a point of the light that `sample`, uniform on the unit square, chooses. For
-/// lights without extent, to their middle.
-struct LightRay {
-  Eigen::Vector3d direction;  ///< unit
-  double distance;
+/// The shadow rays from a place to a light.
+class ShadowRays {
+ public:
+  ShadowRays(const LightDescription& light, const Eigen::Vector3d& position);
+  /// @param on_disk of the unit disk, which stands for the light's; of lights without extent all rays are
+  /// one.
+  ShadowRay to(const Eigen::Vector2d& on_disk) const;
+
+ private:
+  Eigen::Vector3d middle_, x_, y_;  // from the place
+  bool is_far_;
 };
-LightRay light_ray(const LightDescription& light, const Eigen::Vector3d& position,
-                   const Eigen::Vector2d& sample);
 
 /// By how much a light's extent spreads the half vector on the disk, an axis: what it adds to the square of a
 /// query's roughness.

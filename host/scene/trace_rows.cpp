@@ -20,6 +20,9 @@ namespace {
 /// 0.23.
 constexpr double kMostPenumbraResidual = 0.12;
 
+/// Of the cosine between normal and eye, over a sample's footprint, of itself.
+constexpr double kMostForeshortening = 0.1;
+
 /// What a fitted pixel shows; unset: it needs samples.
 struct FittedPixel {
   Color radiance = Color::Zero();
@@ -128,11 +131,11 @@ std::optional<FittedPixel> BlockTracer::fit(int row, int column) const {
   if (!hit) return pixel;
   pixel.footprint = fitted.footprint(few_);
   pixel.normal = middle.normal;
-  const FitLimits limits{pixels_.largest_residual, std::max(1, pixels_.subpixels * pixels_.subpixels)};
+  const FitLimits limits{pixels_.tolerance, std::max(1, pixels_.subpixels * pixels_.subpixels)};
   for (std::size_t lamp = 0; lamp < middle.lamps.size(); ++lamp) {
     if (!fitted.sees(lamp)) continue;
     if (fitted.penumbra_residual(lamp) > kMostPenumbraResidual ||
-        !fitted.ask(lamp, few_, pixels_.normal_change[middle.material], limits, &pixel.queries))
+        !fitted.ask(lamp, few_, limits, &pixel.queries))
       return std::nullopt;
   }
   for (GlintQuery& query : pixel.queries) query.material = middle.material;
@@ -225,9 +228,9 @@ void BlockTracer::sample_cell(int row, int column, std::uint32_t first_sample, R
 
 /// A lamp's half vector's change a pixel to the right and down, at point k of a pixel of n x n: by
 /// differences to its neighbours in the pixel that lie on the same surface in the lamp's light. None where it
-/// has none along one of both axes.
+/// has none along one of both axes, and towards rims, where nothing is linear over `sigma_pixels` any more.
 std::optional<Eigen::Matrix2d> half_vector_change(const std::vector<SeenPoint>& points, int n, int k,
-                                                  std::size_t lamp) {
+                                                  std::size_t lamp, double sigma_pixels) {
   const SeenPoint& middle = points[static_cast<std::size_t>(k)];
   const auto is_alike = [&](const SeenPoint& point) {
     return point.hit && point.faces_eye && point.hit->shape == middle.hit->shape &&
@@ -246,6 +249,12 @@ std::optional<Eigen::Matrix2d> half_vector_change(const std::vector<SeenPoint>& 
       const int index = k + step * stride[axis];
       return points[static_cast<std::size_t>(index)].lamps[lamp].half_vector;
     };
+    const auto cosine = [&](int step) {
+      const SeenPoint& point = points[static_cast<std::size_t>(k + step * stride[axis])];
+      return point.frame.z.dot(point.to_eye);
+    };
+    const double foreshortened = std::abs(cosine(ends[1]) - cosine(ends[0])) * n / (ends[1] - ends[0]);
+    if (!(sigma_pixels * foreshortened < kMostForeshortening * cosine(0))) return std::nullopt;
     change.col(axis) = (half_vector(ends[1]) - half_vector(ends[0])) * n / (ends[1] - ends[0]);
   }
   return change;
@@ -259,8 +268,9 @@ std::vector<std::vector<Eigen::Matrix2d>> BlockTracer::turns_of(const std::vecto
     if (!point.hit || !point.faces_eye || !pixels_.takes_first_order[point.material]) continue;
     turns[k].assign(point.lamps.size(), Eigen::Matrix2d::Zero());
     for (std::size_t lamp = 0; lamp < point.lamps.size(); ++lamp) {
-      if (!(point.lamps[lamp].visible > 0)) continue;
-      const auto change = half_vector_change(points, pixels_.subpixels, static_cast<int>(k), lamp);
+      if (!pixels_.turns || !(point.lamps[lamp].visible > 0)) continue;
+      const auto change = half_vector_change(points, pixels_.subpixels, static_cast<int>(k), lamp,
+                                             lattice_filter_.sigma_pixels);
       const double least = kLeastTurn * point.lamps[lamp].seen.roughness / lattice_filter_.sigma_pixels;
       if (change && change->norm() > least) turns[k][lamp] = turn_over(point.duv, *change);
     }

@@ -21,6 +21,25 @@ StaticScene::StaticScene(const SceneDescription& description)
     if (materials[n].glints && materials[n].id) glints[n].emplace(materials[n]);
 }
 
+namespace {
+
+/// Covariance on the disk of a lobe that half vectors of some covariance widen; none where it is round.
+std::optional<Eigen::Matrix2d> long_lobe(double roughness, const TangentFrame& frame,
+                                         const Eigen::Matrix3d& half_vector_cov) {
+  constexpr double round = 0.02;  // half the difference of both variances, of their mean
+  Eigen::Matrix<double, 2, 3> on_disk;
+  on_disk << frame.x.transpose(), frame.y.transpose();
+  Eigen::Matrix2d cov = on_disk * half_vector_cov * on_disk.transpose();
+  cov.diagonal().array() += roughness * roughness;
+  cov(1, 0) = cov(0, 1);
+  const double mean = cov.trace() / 2;
+  const double difference = std::hypot(cov(0, 0) - mean, cov(0, 1));
+  if (!(difference > round * mean && mean + difference < 1)) return std::nullopt;
+  return cov;
+}
+
+}  // namespace
+
 SeenLamp Viewer::see(const LightDescription& light, const SeenPoint& point,
                      const std::vector<Eigen::Vector2d>& light_samples) const {
   const TangentFrame& frame = point.frame;
@@ -30,20 +49,24 @@ SeenLamp Viewer::see(const LightDescription& light, const SeenPoint& point,
   const Eigen::Vector3d& direction = lamp.incident.direction;
   if (direction.dot(frame.z) < kMinCosine || direction.dot(frame.face_normal) < kMinCosine) return lamp;
   const std::size_t rays = has_extent(light) ? light_samples.size() : 1;
-  std::size_t arrived = 0;
+  const ShadowRays to_light(light, point.hit->position);
+  std::vector<ShadowRay> above;
   for (std::size_t n = 0; n < rays; ++n) {
-    const LightRay to_light = light_ray(light, point.hit->position, light_samples[n]);
-    arrived += to_light.direction.dot(frame.face_normal) >= kMinCosine &&
-               !shared->geometry.occluded(*point.hit, to_light.direction, to_light.distance);
+    const ShadowRay ray = to_light.to(light_samples[n]);
+    if (ray.direction.dot(frame.face_normal) >= kMinCosine) above.push_back(ray);
   }
+  const std::size_t arrived = shared->geometry.count_open(*point.hit, above);
   lamp.is_above = true;
   lamp.visible = static_cast<double>(arrived) / static_cast<double>(rays);
+  const Color unshadowed = lamp.incident.irradiance;
   lamp.incident.irradiance *= lamp.visible;
   lamp.seen = see_lobes((*layers)[point.material], frame.z, point.to_eye, lamp.incident);
   lamp.half_vector = frame.on_disk(lamp.seen.half_vector);
+  lamp.lobe_cov = long_lobe(shared->materials[point.material].roughness, frame, lamp.seen.half_vector_cov);
   const Color regained = (*layers)[point.material].regained(frame.to_local(lamp.seen.to_eye));
   lamp.seen.mirrored = lamp.seen.mirrored.cwiseProduct(regained);
   lamp.seen.glint_weight = lamp.seen.glint_weight.cwiseProduct(regained);
+  lamp.weight_unshadowed = lamp.seen.glint_weight.dot(unshadowed);
   return lamp;
 }
 
@@ -131,7 +154,7 @@ void Viewer::ask(const SeenPoint& point, double sigma_pixels, const SamplePlace&
         glints ? glints->weight(*point.hit, places.front(), point.frame, lamp.seen) : lamp.seen.glint_weight;
     query.weight = weight.cwiseProduct(lamp.incident.irradiance).cast<float>();
     if (!(query.weight.maxCoeff() > 0)) continue;
-    if (!turns.empty()) query.query.half_vector_turn = turns[n];
+    if (!turns.empty()) query.query.half_vector_turn = turns[n], query.query.lobe_cov = lamp.lobe_cov;
     for (const GlintPlace& here : places) {
       query.query.footprint = here.footprint;
       query.query.half_vector = {lamp.seen.half_vector.dot(here.x), lamp.seen.half_vector.dot(here.y)};

@@ -38,11 +38,14 @@ struct StaticScene {
 
 /// A lamp seen from a point.
 struct SeenLamp {
-  bool is_above = false;  ///< the horizons, with any power; else nothing below is set
-  double visible = 0;     ///< share of it that no shadow hides
-  Illumination incident;  ///< of what is visible
+  bool is_above = false;         ///< the horizons, with any power; else nothing below is set
+  double visible = 0;            ///< share of it that no shadow hides
+  Illumination incident;         ///< of what is visible
+  double weight_unshadowed = 0;  ///< sum of the colours of what D would be multiplied with, without shadows
   LobesSeen seen;
   Eigen::Vector2d half_vector{0, 0};  ///< on the disk of the point's frame
+  std::optional<Eigen::Matrix2d>
+      lobe_cov;  ///< of its query, where the light's extent makes that longer one way
 };
 
 /// What a ray of the camera meets. Without a hit the radiance is all.
@@ -84,7 +87,7 @@ struct Viewer {
   LightGathering gathering;
 
   /// The ray through (x, y), pixels from the left and from the top edge.
-  /// @param light_samples where on a light the shadow rays end, see light_ray; of a light without extent the
+  /// @param light_samples where on a light the shadow rays end, see ShadowRays; of a light without extent the
   /// first one does.
   SeenPoint look(double x, double y, const std::vector<Eigen::Vector2d>& light_samples) const;
 

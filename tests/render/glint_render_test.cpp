@@ -25,6 +25,7 @@ std::string sphere_job(const std::string& keys, const std::string& light = kSun)
 width = 96
 height = 72
 subpixels = 2
+filter = "subpixels"
 aovs = ["ndf"]
 [camera]
 position = [0.0, -4.0, 1.0]

@@ -51,6 +51,22 @@ TEST(PixelFit, OneFootprintAPixelShowsAsMuchAsTheFinePicture) {
   EXPECT_GT(error(sixteen.image, fine_picture()), 0.01);
 }
 
+/// Towards the rim uv bend: footprints are split until they leave out what the tolerance allows.
+TEST(PixelFit, SplitsFootprintsThatBend) {
+  const std::vector<std::string> rim = {
+      "camera.look_at=[0.75, -0.66, 0.1]", "camera.fov=3",
+      "light=[{ type = \"directional\", direction = [-0.99, -0.13, -0.1], irradiance = [3, 3, 3] }]"};
+  const auto render_rim = [&](std::vector<std::string> overrides) {
+    overrides.insert(overrides.end(), rim.begin(), rim.end());
+    return render_job(overrides).image;
+  };
+  const Image fine = render_rim({"image.width=640", "image.height=640", "image.subpixels=1"});
+  const Image one = render_rim({"accuracy.tolerance=0.5"}), split = render_rim({"accuracy.tolerance=0.001"});
+  EXPECT_LT(mean_of(one, 3), 2);  // queries
+  EXPECT_GT(mean_of(split, 3), 2);
+  EXPECT_LT(error(split, fine), 0.6 * error(one, fine));
+}
+
 TEST(PixelFit, IsTheSameForAnyBlockSize) {
   const RenderResult whole = render_job({}, kSize);
   for (const int rows : {1, 7}) EXPECT_EQ(render_job({}, rows).image.pixels, whole.image.pixels) << rows;

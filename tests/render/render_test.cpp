@@ -22,6 +22,7 @@ std::string sphere_job(const std::string& light) {
 width = 96
 height = 72
 subpixels = 2
+filter = "subpixels"
 aovs = ["ndf", "uv", "footprint", "normal", "queries"]
 [camera]
 position = [0.0, -4.0, 1.0]

@@ -7,6 +7,7 @@
 
 #include "host/base/constants.h"
 #include "host/scene/camera.h"
+#include "host/scene/light_samples.h"
 #include "host/scene/scene.h"
 #include "host/scene/shading.h"
 #include "tests/scene/pixel_radiance.h"
@@ -101,11 +102,12 @@ TEST(AreaLights, HalfVectorsSpreadAsTheirPointsDo) {
     const Vector3d middle = (to_eye + seen.direction).normalized();
     const Vector3d x = middle.unitOrthogonal(), y = middle.cross(x);
     constexpr int steps = 40;
+    const ShadowRays to_light(light, {0, 0, 0});
     Eigen::Vector2d sum(0, 0);
     double squares = 0;
     for (int a = 0; a < steps; ++a)
       for (int b = 0; b < steps; ++b) {
-        const LightRay ray = light_ray(light, {0, 0, 0}, {(a + 0.5) / steps, (b + 0.5) / steps});
+        const ShadowRay ray = to_light.to(on_unit_disk({(a + 0.5) / steps, (b + 0.5) / steps}));
         const Vector3d half = (to_eye + ray.direction).normalized();
         const Eigen::Vector2d on_disk(half.dot(x), half.dot(y));
         sum += on_disk;
@@ -114,6 +116,70 @@ TEST(AreaLights, HalfVectorsSpreadAsTheirPointsDo) {
     const double count = steps * steps, variance = (squares / count - (sum / count).squaredNorm()) / 2;
     EXPECT_NEAR(half_vector_variance(seen.variance, seen.direction.dot(middle)), variance, 0.02 * variance);
   }
+}
+
+/// Queries of one pixel on the plane z = 0, seen from `eye`, for a material of tiny roughness.
+Eigen::Matrix2d lobe_under(const LightDescription& light, const Vector3d& eye,
+                           const std::optional<CoatDescription>& coat) {
+  SceneDescription scene;
+  MaterialDescription material;
+  material.name = "m";
+  material.roughness = 1e-4;
+  material.coat = coat;
+  scene.materials = {material};
+  scene.shapes = {{PlaneShape{{0, 0, 0}, 4}, "m"}};
+  scene.camera.position = eye;
+  scene.camera.look_at = {0, 0, 0};
+  scene.camera.fov_degrees = 1;
+  scene.lights = {light};
+  PixelSettings pixels;
+  pixels.subpixels = 1;
+  pixels.filter = PixelFilter({FilterKind::gaussian});
+  pixels.fits = true;
+  pixels.takes_first_order = {true};
+  const TracedRows rows = Scene(scene, 9, 9, pixels).trace(4, 1);
+  return rows.queries.at(rows.queries.size() / 2).query.lobe_cov.value();
+}
+
+/// A direction above z = 0, below an interface on it.
+Vector3d refracted(const Vector3d& direction, double ior) {
+  const Eigen::Vector2d parallel = direction.head<2>() / ior;
+  return {parallel.x(), parallel.y(), std::sqrt(1 - parallel.squaredNorm())};
+}
+
+// Brute force, on the disk of the surface: both variances of it, from above to 75 degrees, and below coats.
+TEST(AreaLights, LobesAreAsLongAsTheirHalfVectorsSpread) {
+  for (const double degrees : {40.0, 60.0, 75.0})
+    for (const bool is_sphere : {true, false})
+      for (const double ior : {1.0, 1.5}) {
+        const double angle = degrees * kPi / 180;
+        const Vector3d to_light(std::sin(angle), 0, std::cos(angle)),
+            eye(-std::sin(angle), 0.2, std::cos(angle));
+        const LightDescription light =
+            is_sphere ? LightDescription(SphereLight{10 * to_light, 0.5, {1, 1, 1}})
+                      : LightDescription(DiskLight{10 * to_light, Vector3d(-1, 0.3, -1), 0.5, {1, 1, 1}});
+        std::optional<CoatDescription> coat;
+        if (ior > 1) coat = CoatDescription{ior, 0.02};
+        const Eigen::Matrix2d lobe = lobe_under(light, 4 * eye, coat);
+
+        const ShadowRays rays(light, {0, 0, 0});
+        Eigen::Vector2d sum(0, 0);
+        Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
+        constexpr int steps = 60;
+        for (int a = 0; a < steps; ++a)
+          for (int b = 0; b < steps; ++b) {
+            const Vector3d direction =
+                rays.to(on_unit_disk({(a + 0.5) / steps, (b + 0.5) / steps})).direction;
+            const Vector3d half = (refracted(eye.normalized(), ior) + refracted(direction, ior)).normalized();
+            sum += half.head<2>(), squares += half.head<2>() * half.head<2>().transpose();
+          }
+        constexpr double count = steps * steps;
+        const Eigen::Matrix2d truth = squares / count - sum * sum.transpose() / (count * count);
+        EXPECT_NEAR(lobe.trace(), truth.trace(), 0.03 * truth.trace())
+            << degrees << " " << is_sphere << " " << ior;
+        EXPECT_NEAR(lobe.determinant(), truth.determinant(), 0.05 * truth.determinant())
+            << degrees << " " << is_sphere << " " << ior;
+      }
 }
 
 TEST(AreaLights, WidenTheRoughnessOfQueries) {
