@@ -11,6 +11,7 @@
 #include "host/base/constants.h"
 #include "host/base/interrupt.h"
 #include "host/base/random.h"
+#include "host/base/stopwatch.h"
 #include "host/base/symmetric_matrix.h"
 #include "host/methods/patch_brdf.h"
 #include "host/surface/disk.h"
@@ -22,7 +23,8 @@ namespace mica::host {
 namespace {
 
 constexpr int kSide = 24;  // texels: maps are small, so that wide footprints cost little
-constexpr std::uint64_t kBatch = 4096;
+constexpr double kMostTexels = 1000, kMostTexelsOfBrdf = 30;  // standard deviations of footprints
+constexpr std::uint64_t kBatch = 4096, kOracleShare = 200;    // of the answers, which are slow
 
 /// QuestionRandom numbers of one question.
 class QuestionRandom {
@@ -77,8 +79,8 @@ std::vector<Surface> hard_surfaces() {
   return surfaces;
 }
 
-Footprint footprint_of(const Surface& surface, QuestionRandom* random) {
-  constexpr double least_texels = 0.01, most_texels = 1000, thinnest = 1.5e-3;
+Footprint footprint_of(const Surface& surface, double most_texels, QuestionRandom* random) {
+  constexpr double least_texels = 0.01, thinnest = 1.5e-3;
   const double major = random->log_uniform(least_texels, most_texels);
   const double aspect =
       random->among(2) ? random->log_uniform(1, 1400) : 1;  // correlation 1 - 1e-6 at 45 degrees
@@ -117,10 +119,10 @@ void add_first_order(const Surface& surface, QuestionRandom* random, Query* quer
   query->half_vector_turn = random->log_uniform(1e-5, 1) / most * turn;
 }
 
-Query query_of(const Surface& surface, bool first_order, std::uint64_t question) {
+Query query_of(const Surface& surface, double most_texels, bool first_order, std::uint64_t question) {
   QuestionRandom random(question);
   Query query;
-  query.footprint = footprint_of(surface, &random);
+  query.footprint = footprint_of(surface, most_texels, &random);
   query.roughness = random.log_uniform(1e-4, 1);
   query.half_vector = half_vector_of(surface, query, &random);
   if (first_order && random.among(2)) add_first_order(surface, &random, &query);
@@ -152,6 +154,13 @@ class AnswerCount {
                     query.half_vector.x(), query.half_vector.y(), query.roughness,
                     has_first_order(query) ? ", turned or with a lobe" : "");
   }
+  /// What has an answer without its turn may be refused for that.
+  void refuse(const std::string& problem, const Query& query) {
+    if (query.half_vector_turn.isZero(0))
+      add(false, problem, query);
+    else
+      ++answers_->refused;
+  }
   /// Asks for a batch; what it loses is all wrong.
   template <typename Ask>
   void ask(std::size_t questions, const Query& first, const Ask& ask) {
@@ -168,16 +177,16 @@ class AnswerCount {
 };
 
 /// The questions that the method takes; others are counted as wrong.
-std::vector<Query> taken(const Method& method, const Surface& surface, std::uint64_t first,
-                         std::uint64_t count, AnswerCount* answers) {
+std::vector<Query> taken(const Method& method, const Surface& surface, double most_texels,
+                         std::uint64_t first, std::uint64_t count, AnswerCount* answers) {
   std::vector<Query> queries;
   for (std::uint64_t n = 0; n < count; ++n) {
-    const Query query = query_of(surface, method.traits().first_order, first + n);
+    const Query query = query_of(surface, most_texels, method.traits().first_order, first + n);
     const std::string problem = method.query_problem(query, &surface);
     if (problem.empty())
       queries.push_back(query);
     else
-      answers->add(false, problem, query);
+      answers->refuse(problem, query);
   }
   return queries;
 }
@@ -189,7 +198,7 @@ void ask_densities(const Method& method, Device* device, const Surface& surface,
   for (std::uint64_t done = 0; done < count; done += kBatch) {
     check_interrupt();
     const std::vector<Query> queries =
-        taken(method, surface, first + done, std::min(kBatch, count - done), &answered);
+        taken(method, surface, kMostTexels, first + done, std::min(kBatch, count - done), &answered);
     answered.ask(queries.size(), queries.front(), [&] {
       if (done == 0)
         evaluator->calibrate(
@@ -209,7 +218,7 @@ void ask_hard_brdf(const Method& method, Device* device, const Surface& surface,
   for (std::uint64_t done = 0; done < count; done += kBatch) {
     check_interrupt();
     const std::vector<Query> queries =
-        taken(method, surface, first + done, std::min(kBatch, count - done), &answered);
+        taken(method, surface, kMostTexelsOfBrdf, first + done, std::min(kBatch, count - done), &answered);
     std::vector<BrdfQuery> values;
     std::vector<ViewQuery> views;
     std::vector<SampleQuery> draws;
@@ -252,9 +261,11 @@ std::vector<HardAnswers> ask_hard_questions(Device& device, std::uint64_t answer
     std::vector<const Surface*> own;
     for (const Surface& surface : surfaces)
       if (method->takes(surface.interpolation())) own.push_back(&surface);
-    const std::uint64_t each = answers / own.size() + 1;
+    const std::uint64_t share = traits.densities && !traits.device ? kOracleShare : 1;
+    const std::uint64_t each = answers / share / own.size() + 1;
     for (const bool of_brdf : {false, true}) {
       if (of_brdf ? !traits.brdf : !traits.densities) continue;
+      const Stopwatch clock;
       HardAnswers found;
       found.method = method->name() + (of_brdf ? ", BRDF" : "");
       for (std::size_t n = 0; n < own.size(); ++n) {
@@ -263,6 +274,7 @@ std::vector<HardAnswers> ask_hard_questions(Device& device, std::uint64_t answer
         else
           ask_densities(*method, &device, *own[n], first + n * each, each, &found);
       }
+      found.seconds = clock.seconds();
       all.push_back(found);
     }
   }
