@@ -24,7 +24,8 @@ namespace {
 
 constexpr int kSide = 24;  // texels: maps are small, so that wide footprints cost little
 constexpr double kMostTexels = 1000, kMostTexelsOfBrdf = 30;  // standard deviations of footprints
-constexpr std::uint64_t kBatch = 4096, kOracleShare = 200;    // of the answers, which are slow
+constexpr std::uint64_t kBatch = 4096;
+constexpr std::uint64_t kBrdfShare = 5, kOracleShare = 200;  // of the answers: they are slow
 
 /// QuestionRandom numbers of one question.
 class QuestionRandom {
@@ -261,11 +262,11 @@ std::vector<HardAnswers> ask_hard_questions(Device& device, std::uint64_t answer
     std::vector<const Surface*> own;
     for (const Surface& surface : surfaces)
       if (method->takes(surface.interpolation())) own.push_back(&surface);
-    const std::uint64_t share = traits.densities && !traits.device ? kOracleShare : 1;
-    const std::uint64_t each = answers / share / own.size() + 1;
     for (const bool of_brdf : {false, true}) {
       if (of_brdf ? !traits.brdf : !traits.densities) continue;
       const Stopwatch clock;
+      const std::uint64_t share = of_brdf ? kBrdfShare : traits.device ? 1 : kOracleShare;
+      const std::uint64_t each = answers / share / own.size() + 1;
       HardAnswers found;
       found.method = method->name() + (of_brdf ? ", BRDF" : "");
       for (std::size_t n = 0; n < own.size(); ++n) {

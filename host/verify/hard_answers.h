@@ -26,8 +26,8 @@ struct HardAnswers {
 /// of 1 - 1e-6; half vectors on a normal, in its lobe's far tail, or anywhere up to the rim; of methods that
 /// take them, half vectors that turn and lobes that are not round. BRDFs are asked for values, energies and
 /// draws at directions down to the horizon.
-/// @param answers of each method, about; of the reference a two-hundredth. @param first number of the first
-/// question; others are other ones.
+/// @param answers of each method, about; of BRDFs a fifth, of the reference a two-hundredth. @param first
+/// number of the first question; others are other ones.
 std::vector<HardAnswers> ask_hard_questions(Device& device, std::uint64_t answers, std::uint64_t first = 0,
                                             const MethodRegistry& methods = MethodRegistry::builtin());
 
