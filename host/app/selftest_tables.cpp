@@ -121,4 +121,28 @@ nlohmann::json hard_cases_json(const std::vector<HardResult>& results) {
   return list;
 }
 
+std::vector<HardAnswers> print_hard_answers(Device* device, std::uint64_t answers,
+                                            const MethodRegistry& methods) {
+  if (answers == 0) return {};
+  const std::vector<HardAnswers> all = ask_hard_questions(*device, answers, 0, methods);
+  fmt::print("{:<20} {:>10} {:>9} {:>8} {:>6}  {}\n", "random questions", "answered", "replaced", "refused",
+             "wrong", "the first wrong one");
+  for (const HardAnswers& a : all)
+    fmt::print("{:<20} {:>10} {:>9} {:>8} {:>6}  {}\n", a.method, a.answered, a.replaced, a.refused, a.wrong,
+               a.fault);
+  return all;
+}
+
+nlohmann::json hard_answers_json(const std::vector<HardAnswers>& answers) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const HardAnswers& a : answers)
+    list.push_back({{"method", a.method},
+                    {"answered", a.answered},
+                    {"replaced", a.replaced},
+                    {"refused", a.refused},
+                    {"wrong", a.wrong},
+                    {"fault", a.fault}});
+  return list;
+}
+
 }  // namespace mica::host::app

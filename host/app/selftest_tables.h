@@ -1,4 +1,4 @@
-// The two tables of `mica selftest` beside its checks: functions in ULP, and hard cases.
+// The tables of `mica selftest` beside its checks: functions in ULP, hard cases, and random hard questions.
 #pragma once
 
 #include <cstdint>
@@ -6,6 +6,7 @@
 
 #include "host/device/device.h"
 #include "host/verify/arithmetic.h"
+#include "host/verify/hard_answers.h"
 #include "host/verify/run_hard_case.h"
 
 namespace mica::host::app {
@@ -18,5 +19,10 @@ nlohmann::json arithmetic_json(const std::vector<FunctionError>& errors);
 std::vector<HardResult> print_hard_cases(Device* device, std::uint64_t evaluations,
                                          const MethodRegistry& methods);
 nlohmann::json hard_cases_json(const std::vector<HardResult>& results);
+
+/// Asks random hard questions and prints what became of them. @param answers of each method; 0: none.
+std::vector<HardAnswers> print_hard_answers(Device* device, std::uint64_t answers,
+                                            const MethodRegistry& methods);
+nlohmann::json hard_answers_json(const std::vector<HardAnswers>& answers);
 
 }  // namespace mica::host::app

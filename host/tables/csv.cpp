@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string_view>
@@ -51,7 +53,10 @@ bool to_number(std::string_view cell, double* value) {
   if (cell.size() > 1 && cell.front() == '+' && cell[1] != '-') cell.remove_prefix(1);
   const char* const end = cell.data() + cell.size();
   const auto [stop, error] = std::from_chars(cell.data(), end, *value);
-  return error == std::errc() && stop == end;
+  if (stop != end || error == std::errc()) return stop == end && error == std::errc();
+  if (error != std::errc::result_out_of_range) return false;
+  *value = std::strtod(std::string(cell).c_str(), nullptr);
+  return std::isfinite(*value);  // too small for a double is 0, too large is nothing
 }
 
 bool is_comment(std::string_view line) {

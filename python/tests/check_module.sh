@@ -37,3 +37,4 @@ if cmake -S "$source/python" -B lacking -DCMAKE_DISABLE_FIND_PACKAGE_embree=TRUE
 fi
 
 MICA_COMMAND=$build/mica environment/bin/python -m pytest --quiet -p no:cacheprovider "$source/python/tests"
+environment/bin/python "$source/tests/differential/compare_parsers.py" "$build/tests/mica_read_files" "$source" 500

@@ -39,6 +39,17 @@ class QueryTables : public FolderTest {
   }
 };
 
+/// As NumPy and R read them.
+TEST_F(QueryTables, TakeNumbersTooSmallForADoubleAsZero) {
+  const std::string header = "u,v,cuu,cuv,cvv,s,t\n";
+  std::ofstream(path("small.csv")) << header + "1e-400,-1e-999,1e-3,4.9e-324,1e-3,0,0\n";
+  const QueryTable table(path("small.csv"), 0.01);
+  const Query query = table.query(0);
+  EXPECT_EQ(query.footprint.mean_uv, Eigen::Vector2d::Zero());
+  EXPECT_EQ(query.footprint.cov_uv(0, 1), std::numeric_limits<double>::denorm_min());
+  expect_refusal("large.csv", header + "1e400,0,1e-3,0,1e-3,0,0\n", "usage", "\"1e400\" is not a number");
+}
+
 TEST_F(QueryTables, RefuseDamagedArrays) {
   const std::string good = npy_of(rows(20)), data(20 * 7 * 8, '\0');
   const auto expect_damage = [&](const std::string& content, const std::string& message) {
