@@ -127,9 +127,7 @@ Color PixelFit::radiance(const FilterSum& filter) const {
 }
 
 Footprint PixelFit::footprint(const FilterSum& filter) const {
-  double variance = filter.sigma_pixels * filter.sigma_pixels;
-  for (std::size_t n = 0; n < filter.weights.size(); ++n)
-    variance += filter.weights[n] * filter.offsets_pixels[n] * filter.offsets_pixels[n];
+  const double variance = filter.variance();
   const Eigen::Matrix2d cov = variance * Eigen::Matrix2d::Identity();
   Eigen::Matrix2d duv;
   duv << u_.slope.transpose(), v_.slope.transpose();
