@@ -125,7 +125,7 @@ void add_options(CommandLine* command, GlintsOptions* options) {
   command
       ->add_option("--channel", options->channels,
                    "ROLE=NAME: a layer (ViewLayer.Position) or channels (P.x,P.y,P.z) for position, normal, "
-                   "true_normal, tangent, uv or id")
+                   "true_normal, tangent, uv, uv_dx, uv_dy, dp_du, dp_dv or id")
       .repeated();
   command->add_option("--other-ids", options->other_ids, "What to do with ids that no material has")
       .check(one_of({"refuse", "skip"}))
