@@ -94,7 +94,7 @@ class FilterOfScale : public Scale {
       make_fine(
           camera_,
           [&](const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
-            std::optional<Surface> surface = plane(origin, direction);
+            auto surface = plane(origin, direction);
             const Eigen::Vector3d to_right = camera_.right();  // in the plane
             if (surface) surface->uv += shift / 4 * to_right.head<2>();
             return surface;
