@@ -75,6 +75,7 @@ void tell(const std::vector<std::string>& notes, const std::vector<std::string>&
 
 int run(const GlintsOptions& options, const MethodRegistry& methods) {
   const LayerSettings settings = layer_settings(options);
+  check(settings);
   const std::string camera = options.camera.empty()
                                  ? std::filesystem::path(options.buffer).replace_extension(".json").string()
                                  : options.camera;

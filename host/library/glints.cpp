@@ -52,6 +52,7 @@ GlintLayer write_glints(const Device& device, const std::string& buffer, const s
                         const std::string& path, const GlintSettings& settings, const RunControl& control,
                         const Methods& methods) {
   const host::LayerSettings layer = layer_settings(settings);
+  host::check(layer);
   const std::string camera = settings.camera.empty()
                                  ? std::filesystem::path(buffer).replace_extension(".json").string()
                                  : settings.camera;

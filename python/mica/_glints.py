@@ -72,7 +72,7 @@ def glints(
         aovs: any of "D", "footprint", "error" and "coverage".
         set: values to put in place of the scene's, as of `mica glints --set`.
         device: its number in `mica.devices()`.
-        progress: called with (rows done, all); what it raises ends the call, and there is no file.
+        progress: called with (rows done, all); what it raises ends the call.
 
     Returns:
         A GlintLayer: what was written, and what became of the buffer's pixels.
@@ -89,7 +89,7 @@ def glints(
     settings.channels = [f"{role}={name}" for role, name in (channels or {}).items()]
     settings.skips_other_ids, settings.scale, settings.per_lamp = other_ids == "skip", scale, per_lamp
     settings.aovs, settings.overrides = list(aovs), assignments(set or {})
-    files = [os.fsencode(path) for path in (gbuffer, scene, output, "" if camera is None else camera)]
+    files = os.fsencode(gbuffer), os.fsencode(scene), os.fsencode(output), os.fsencode("" if camera is None else camera)
 
     def work(cancellation: _mica.CancellationToken, report: Any) -> GlintLayer:
         made = _mica.write_glints(open_device(device), *files, settings, cancellation, report)
