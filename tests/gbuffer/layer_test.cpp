@@ -266,12 +266,14 @@ TEST_F(Layer, TakesNeighboursWhereDerivativesAreNone) {
   const Image buffer = analytic_buffer::buffer(camera, plane);
   make(buffer, camera);
   const std::vector<float> expected = channel("R");
-  Image none = with_derivatives(buffer, camera, plane, false);
-  for (std::size_t n = 0; n < none.pixels.size(); n += none.channels.size())
-    for (std::size_t k = buffer.channels.size(); k < none.channels.size(); ++k)
-      none.pixels[n + k] = n / none.channels.size() % 2 == 0 ? std::nanf("") : 0;
-  make(none, camera);
-  EXPECT_EQ(channel("R"), expected);
+  for (const bool of_position : {false, true}) {
+    Image none = with_derivatives(buffer, camera, plane, of_position);
+    for (std::size_t n = 0; n < none.pixels.size(); n += none.channels.size())
+      for (std::size_t k = buffer.channels.size(); k < none.channels.size(); ++k)
+        none.pixels[n + k] = n / none.channels.size() % 2 == 0 ? std::nanf("") : 0;
+    make(none, camera);
+    EXPECT_EQ(channel("R"), expected) << of_position;
+  }
 }
 
 /// Every method answers, each with light that is a number and not all black.
