@@ -75,6 +75,7 @@ void tell(const std::vector<std::string>& notes, const std::vector<std::string>&
 
 int run(const GlintsOptions& options, const MethodRegistry& methods) {
   const LayerSettings settings = layer_settings(options);
+  check(settings);
   const std::string camera = options.camera.empty()
                                  ? std::filesystem::path(options.buffer).replace_extension(".json").string()
                                  : options.camera;
@@ -125,7 +126,7 @@ void add_options(CommandLine* command, GlintsOptions* options) {
   command
       ->add_option("--channel", options->channels,
                    "ROLE=NAME: a layer (ViewLayer.Position) or channels (P.x,P.y,P.z) for position, normal, "
-                   "true_normal, tangent, uv or id")
+                   "true_normal, tangent, uv, uv_dx, uv_dy, dp_du, dp_dv or id")
       .repeated();
   command->add_option("--other-ids", options->other_ids, "What to do with ids that no material has")
       .check(one_of({"refuse", "skip"}))

@@ -35,35 +35,44 @@ std::vector<std::string> names_of(BufferPreset preset, BufferRole role) {
                                                      {{BufferRole::position, {"position"}},
                                                       {BufferRole::normal, {"sh_normal"}},
                                                       {BufferRole::true_normal, {"geo_normal"}},
-                                                      {BufferRole::tangent, {"dp_du"}},
+                                                      {BufferRole::dp_du, {"dp_du"}},
+                                                      {BufferRole::dp_dv, {"dp_dv"}},
+                                                      {BufferRole::uv_dx, {"duv_dx"}},
+                                                      {BufferRole::uv_dy, {"duv_dy"}},
                                                       {BufferRole::uv, {"uv"}},
                                                       {BufferRole::id, {"glint_id", "shape_index"}}}},
                                                     {BufferPreset::arnold,
                                                      {{BufferRole::position, {"P"}},
                                                       {BufferRole::normal, {"Nsmooth", "N"}},
                                                       {BufferRole::true_normal, {"Ng"}},
-                                                      {BufferRole::tangent, {"dPdu"}},
+                                                      {BufferRole::dp_du, {"dPdu"}},
+                                                      {BufferRole::dp_dv, {"dPdv"}},
                                                       {BufferRole::uv, {"uv", "UV"}},
                                                       {BufferRole::id, {"glint_id", "ID"}}}},
                                                     {BufferPreset::karma,
                                                      {{BufferRole::position, {"P"}},
                                                       {BufferRole::normal, {"N"}},
                                                       {BufferRole::true_normal, {"Ng"}},
-                                                      {BufferRole::tangent, {"tangentu", "dPdu"}},
+                                                      {BufferRole::tangent, {"tangentu"}},
+                                                      {BufferRole::dp_du, {"dPdu"}},
+                                                      {BufferRole::dp_dv, {"dPdv"}},
                                                       {BufferRole::uv, {"uv"}},
                                                       {BufferRole::id, {"glint_id", "id"}}}}};
-  return all.at(preset).at(role);
+  const Names& names = all.at(preset);
+  const auto found = names.find(role);
+  return found == names.end() ? std::vector<std::string>() : found->second;
 }
 
 std::vector<std::vector<std::string>> suffixes(BufferRole role) {
   if (role == BufferRole::id) return {{".X"}, {".V"}, {".I"}, {".Y"}, {".R"}, {".x"}, {""}};
-  if (role == BufferRole::uv)
+  if (role == BufferRole::uv || role == BufferRole::uv_dx || role == BufferRole::uv_dy)
     return {{".U", ".V"}, {".u", ".v"}, {".X", ".Y"}, {".x", ".y"}, {".R", ".G"}, {".r", ".g"}};
   return {{".X", ".Y", ".Z"}, {".R", ".G", ".B"}, {".x", ".y", ".z"}, {".r", ".g", ".b"}};
 }
 
 bool may_be_absent(BufferRole role) {
-  return role == BufferRole::true_normal || role == BufferRole::tangent;
+  return role != BufferRole::position && role != BufferRole::normal && role != BufferRole::uv &&
+         role != BufferRole::id;
 }
 
 class Finder {

@@ -10,7 +10,7 @@
 namespace mica::host {
 
 /// What a channel of a G-buffer is for.
-enum class BufferRole { position, normal, true_normal, tangent, uv, id };
+enum class BufferRole { position, normal, true_normal, tangent, uv, uv_dx, uv_dy, dp_du, dp_dv, id };
 
 template <>
 struct Words<BufferRole> {
@@ -19,9 +19,13 @@ struct Words<BufferRole> {
                                              {"true_normal", BufferRole::true_normal},
                                              {"tangent", BufferRole::tangent},
                                              {"uv", BufferRole::uv},
+                                             {"uv_dx", BufferRole::uv_dx},
+                                             {"uv_dy", BufferRole::uv_dy},
+                                             {"dp_du", BufferRole::dp_du},
+                                             {"dp_dv", BufferRole::dp_dv},
                                              {"id", BufferRole::id}};
 };
-constexpr std::size_t kBufferRoles = 6;
+constexpr std::size_t kBufferRoles = 10;
 
 /// Whose names of channels are looked for.
 enum class BufferPreset { blender5, blender3, mitsuba, arnold, karma };
@@ -36,7 +40,8 @@ struct Words<BufferPreset> {
 };
 
 /// Places in ChannelFile::channels() by role; empty for one that is not there and need not be: the true
-/// normal, for which the smooth one stands, and the tangent, which follows from uv and position.
+/// normal, for which the smooth one stands, the tangent, which follows from uv and position, and derivatives,
+/// for which differences between neighbours stand.
 using BufferChannels = std::array<std::vector<int>, kBufferRoles>;
 
 /// @param presets empty: all. @param by_hand "ROLE=NAME" each; NAME is a layer, "ViewLayer.Position", or

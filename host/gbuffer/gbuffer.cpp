@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <set>
 
 #include "host/base/printable.h"
+#include "host/scene/footprint.h"
 #include "mica/error.h"
 
 namespace mica::host {
@@ -19,6 +22,32 @@ constexpr char kUnfiltered[] =
 
 bool has(const BufferChannels& channels, BufferRole role) {
   return !channels[static_cast<std::size_t>(role)].empty();
+}
+
+/// What channels of derivatives say of a pixel; zero where there are none.
+struct Derivatives {
+  Eigen::Vector2f uv_dx{0, 0}, uv_dy{0, 0};  ///< of uv, a pixel to the right and one down
+  Eigen::Vector3f dp_du{0, 0, 0}, dp_dv{0, 0, 0};
+};
+
+/// As BufferPixel::dpduv: where only uv's change is known, the camera tells that of the position.
+Eigen::Matrix<float, 3, 2> position_change(const Derivatives& derivatives, const BufferPixel& pixel,
+                                           const BufferCamera& camera) {
+  constexpr double least = 1e-6;  // of the sine between both directions
+  Eigen::Matrix<double, 3, 2> change;
+  change << derivatives.dp_du.cast<double>(), derivatives.dp_dv.cast<double>();
+  Eigen::Matrix2d duv;
+  duv << derivatives.uv_dx.cast<double>(), derivatives.uv_dy.cast<double>();
+  if (change.isZero(0) && std::abs(duv.determinant()) > least * duv.squaredNorm()) {
+    Hit hit;
+    hit.face_normal = pixel.face_normal.cast<double>();
+    const BufferCamera::Sight sight = camera.sight(pixel.position.cast<double>());
+    hit.t = sight.t;
+    change = position_differentials(sight.ray, hit) * duv.inverse();
+  }
+  const double area = change.col(0).cross(change.col(1)).norm();
+  if (!change.allFinite() || !(area > least * change.squaredNorm())) change.setZero();
+  return change.cast<float>();
 }
 
 void check_resolution(const ChannelFile& file, const BufferView& view, int scale) {
@@ -44,7 +73,7 @@ GBuffer::GBuffer(const std::string& path, const BufferView& view,
       camera_(view.camera),
       channels_(find_buffer_channels(file_, options.presets, options.channels)) {
   check_resolution(file_, view, scale);
-  if (!has(channels_, BufferRole::tangent))
+  if (!has(channels_, BufferRole::tangent) && !has(channels_, BufferRole::dp_du))
     notes_.push_back(path +
                      ": has no tangents; they are those of uv and position, which facets of a mesh break");
   find_lamps(view);
@@ -120,6 +149,10 @@ BufferPixel GBuffer::pixel_of(const float* values, int row, int column) const {
   if (!next(BufferRole::true_normal, &pixel.face_normal)) pixel.face_normal = pixel.normal;
   next(BufferRole::tangent, &pixel.tangent);
   next(BufferRole::uv, &pixel.uv);
+  Derivatives derivatives;
+  next(BufferRole::uv_dx, &derivatives.uv_dx), next(BufferRole::uv_dy, &derivatives.uv_dy);
+  next(BufferRole::dp_du, &derivatives.dp_du), next(BufferRole::dp_dv, &derivatives.dp_dv);
+  if (!has(channels_, BufferRole::tangent)) pixel.tangent = derivatives.dp_du;
   pixel.material = material_of(*values, row, column);
   if (pixel.material == BufferPixel::kNothing) return {};
   if (!pixel.position.allFinite() || !pixel.normal.allFinite() || !pixel.face_normal.allFinite() ||
@@ -137,6 +170,7 @@ BufferPixel GBuffer::pixel_of(const float* values, int row, int column) const {
     *normal /= length;
   }
   check_place(pixel, row, column);
+  pixel.dpduv = position_change(derivatives, pixel, camera_);
   return pixel;
 }
 

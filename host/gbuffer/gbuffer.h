@@ -18,6 +18,8 @@ struct BufferPixel {
   Eigen::Vector3f position{0, 0, 0};
   Eigen::Vector3f normal{0, 0, 1}, face_normal{0, 0, 1};  ///< unit: smooth over the shape, and of its surface
   Eigen::Vector3f tangent{0, 0, 0};                       ///< towards +u, of any length; zero: not known
+  /// Change of position a unit of u and of v in the plane of the surface; zero: not known.
+  Eigen::Matrix<float, 3, 2> dpduv = Eigen::Matrix<float, 3, 2>::Zero();
   Eigen::Vector2f uv{0, 0};
   bool is_broken = false;  ///< it is nothing because numbers of it are none
 };

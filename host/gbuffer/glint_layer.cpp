@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "host/image/exr_rows.h"
@@ -121,8 +122,8 @@ std::vector<std::string> describe(const BufferCounts& counts) {
   std::vector<std::string> lines;
   if (counts.one_sided > 0)
     lines.push_back(
-        fmt::format("{} of {} pixels lie at rims and seams: their footprints are those of neighbours on "
-                    "one side",
+        fmt::format("{} of {} pixels lie at rims and seams: their footprints are those of derivatives, or of "
+                    "neighbours on one side",
                     counts.one_sided, counts.covered));
   return lines;
 }
@@ -140,11 +141,43 @@ std::vector<std::string> describe_losses(const BufferCounts& counts) {
   return lines;
 }
 
+/// Sums of samples cannot be narrower than these lie apart, unless one lies in the pixel's middle.
+void check_width(const LayerSettings& settings) {
+  constexpr double most_wider = 1.05;
+  if (settings.scale == 1) return;
+  const PixelFilter filter(settings.filter);
+  const double sigma = std::sqrt(filter.by_few().variance());
+  const auto sigma_of_sum = [&](int scale) {
+    return std::sqrt(filter.for_layer().on_lattice(scale).variance());
+  };
+  const double found = sigma_of_sum(settings.scale);
+  if (found <= most_wider * sigma) return;
+  int enough = settings.scale;
+  while (sigma_of_sum(enough) > most_wider * sigma) ++enough;
+  throw UsageError(
+      fmt::format("--scale {}: the filter {} would have a standard deviation of {:.2f} pixels in place of "
+                  "{:.2f}; expected 1, or {} or more",
+                  settings.scale, word_of(settings.filter.kind), found, sigma, enough));
+}
+
 }  // namespace
 
-Job layer_job(Job job, const BufferView& view, const FileWindow& buffer, const LayerSettings& settings) {
+void check(const LayerSettings& settings) {
+  constexpr int most_scale = 16;
+  constexpr double least_width = 0.1, most_width = 8;
+  const double width = settings.filter.width;
   if (settings.filter.kind == FilterKind::subpixels)
     throw UsageError("--filter subpixels: expected gaussian, blackman-harris or box");
+  if (settings.scale < 1 || settings.scale > most_scale)
+    throw UsageError(fmt::format("scale {}: expected 1 to {}", settings.scale, most_scale));
+  if (width != 0 && !(width >= least_width && width <= most_width))
+    throw UsageError(
+        fmt::format("filter width {}: expected {} to {} pixels", width, least_width, most_width));
+  check_width(settings);
+}
+
+Job layer_job(Job job, const BufferView& view, const FileWindow& buffer, const LayerSettings& settings) {
+  check(settings);
   if (settings.per_lamp)
     for (const MaterialDescription& material : job.scene.materials)
       if (material.id && job.methods.get(material.ndf).traits().lit_by_brdf)

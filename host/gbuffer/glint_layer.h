@@ -29,6 +29,9 @@ struct LayerSettings {
   bool per_lamp = false;  ///< a layer for each lamp besides their sum
 };
 
+/// Throws UsageError for settings that no layer can have.
+void check(const LayerSettings& settings);
+
 /// A job for a layer: one that was read for it, in the light of the view's lamps. Throws UsageError for
 /// settings that do not go together.
 Job layer_job(Job job, const BufferView& view, const FileWindow& buffer, const LayerSettings& settings);

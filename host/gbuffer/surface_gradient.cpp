@@ -62,9 +62,14 @@ void PlaneGradient::add(const Eigen::Vector2d& place, const Eigen::Vector2d& ste
   products_ += weight * step * place.transpose();
 }
 
+bool PlaneGradient::is_known() const {
+  return moments_.determinant() > 1e-12 * moments_.squaredNorm();
+}
+
 Eigen::Matrix2d PlaneGradient::value() const {
-  if (!(moments_.determinant() > 1e-12 * moments_.squaredNorm())) return Eigen::Matrix2d::Zero();
-  return products_ * moments_.inverse();
+  if (is_known()) return products_ * moments_.inverse();
+  const double trace = moments_.trace();  // the pseudoinverse of a matrix of rank 1
+  return trace > 0 ? Eigen::Matrix2d(products_ * moments_ / (trace * trace)) : Eigen::Matrix2d::Zero();
 }
 
 SurfaceGradient surface_gradient(const Rectangle<BufferPixel>& pixels, int row, int column) {
@@ -82,12 +87,21 @@ SurfaceGradient surface_gradient(const Rectangle<BufferPixel>& pixels, int row, 
   for (const Corner& corner : kCorners)
     gradient.is_near[corner.place] =
         gradient.is_near[corner.place] && gradient.is_near[corner.across] && gradient.is_near[corner.along];
-  if (!(gradient.is_near[kLeft] || gradient.is_near[kRight]) ||
-      !(gradient.is_near[kUp] || gradient.is_near[kDown]))
-    return gradient;
-
+  const bool has_both_axes = (gradient.is_near[kLeft] || gradient.is_near[kRight]) &&
+                             (gradient.is_near[kUp] || gradient.is_near[kDown]);
   gradient.x = middle.face_normal.cast<double>().unitOrthogonal();
   gradient.y = middle.face_normal.cast<double>().cross(gradient.x);
+  if (!gradient.has_all() && !middle.dpduv.isZero(0)) {
+    Eigen::Matrix2d step;
+    step << gradient.on_plane(middle.dpduv.col(0).cast<double>()),
+        gradient.on_plane(middle.dpduv.col(1).cast<double>());
+    if (step.determinant() != 0) {
+      gradient.duv = step.inverse();
+      gradient.is_known = true;
+      return gradient;
+    }
+  }
+  if (!has_both_axes) return gradient;
   PlaneGradient duv;
   for (std::size_t place = 1; place < offsets.size(); ++place) {
     if (!gradient.is_near[place]) continue;
@@ -96,7 +110,7 @@ SurfaceGradient surface_gradient(const Rectangle<BufferPixel>& pixels, int row, 
             offsets[place].squaredNorm());
   }
   gradient.duv = duv.value();
-  gradient.is_known = gradient.duv.determinant() != 0;
+  gradient.is_known = duv.is_known() && gradient.duv.determinant() != 0;
   return gradient;
 }
 

@@ -7,9 +7,10 @@
 
 namespace mica::host {
 
-/// What a pixel's neighbours on the same surface tell of it.
+/// What a pixel's neighbours on the same surface tell of it, or where some are missing its derivatives.
 struct SurfaceGradient {
-  /// Along both axes of the image there is a neighbour, so that what follows is known.
+  /// Along both axes of the image there is a neighbour, or there are derivatives, so that what follows is
+  /// known.
   bool is_known = false;
   std::array<bool, 9>
       is_near{};  ///< by place of FitStencil::centers(): the same surface, without a seam between
@@ -29,7 +30,9 @@ class PlaneGradient {
  public:
   /// @param squared_pixels distance in the image.
   void add(const Eigen::Vector2d& place, const Eigen::Vector2d& step, double squared_pixels);
-  Eigen::Matrix2d value() const;  ///< zero where places do not tell
+  bool is_known() const;  ///< places lie along more than one line
+  /// Of places along one line the change along it; zero without any.
+  Eigen::Matrix2d value() const;
 
  private:
   Eigen::Matrix2d moments_ = Eigen::Matrix2d::Zero(), products_ = Eigen::Matrix2d::Zero();

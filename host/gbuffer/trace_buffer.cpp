@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -21,15 +22,8 @@
 namespace mica::host {
 namespace {
 
-constexpr int kMostParts = 16;  // of a pixel and lamp, as of a picture's four subpixels
-
-/// A filter of one Gaussian, of the variance of a sum of them.
-FilterSum as_one(const FilterSum& filter) {
-  double variance = filter.sigma_pixels * filter.sigma_pixels;
-  for (std::size_t n = 0; n < filter.weights.size(); ++n)
-    variance += filter.weights[n] * filter.offsets_pixels[n] * filter.offsets_pixels[n];
-  return {std::sqrt(variance), {0}, {1}, 0};
-}
+constexpr int kMostParts = 16;       // of a pixel and lamp, as of a picture's four subpixels
+constexpr double kPlaneStep = 1e-5;  // of the distance to the eye: less than a pixel
 
 /// Where a layer's rows lie in a G-buffer.
 struct LayerPart {
@@ -47,11 +41,12 @@ class BufferBlock {
         pixels_(scene.pixels()),
         part_(part),
         scale_(part.scale),
-        lattice_filter_(scale_ > 1 ? pixels_.filter.on_lattice(scale_) : FilterSum{0, {0}, {1}, 0}),
-        margin_(scale_ > 1 ? pixels_.filter.margin_pixels() : 0),
+        lattice_filter_(scale_ > 1 ? pixels_.filter.for_layer().on_lattice(scale_)
+                                   : FilterSum{0, {0}, {1}, 0}),
+        margin_(scale_ > 1 ? pixels_.filter.for_layer().margin_pixels() : 0),
         filter_(scale_ > 1 ? FilterSum{lattice_filter_.sigma_pixels * scale_, {0}, {1}, 0}
                            : pixels_.filter.by_few()),
-        sigma_pixels_(as_one(filter_).sigma_pixels),
+        sigma_pixels_(std::sqrt(filter_.variance())),
         first_cell_(std::max(-margin_, -part.first_row)),
         end_cell_(std::min(part.row_count + margin_, part.height - part.first_row)),
         first_point_((part.first_row + first_cell_) * scale_),
@@ -100,7 +95,9 @@ class BufferBlock {
   bool all_see(int row, int column, std::size_t lamp) const;
   bool ask_fit(const PixelFit& fitted, std::size_t lamp, const SeenPoint& point, double share,
                const SamplePlace& place, RowQueries* queries) const;
-  Eigen::Matrix2d turn_at(int row, int column, std::size_t lamp, const SeenPoint& point) const;
+  std::array<SeenPoint, 2> steps_on_plane(const SeenPoint& point, const SurfaceGradient& gradient) const;
+  Eigen::Matrix2d turn_at(int row, int column, std::size_t lamp, const SeenPoint& point,
+                          const std::array<SeenPoint, 2>& beside) const;
   void cover();
 
   const BufferView& view_;
@@ -256,12 +253,13 @@ void BufferBlock::ask_without_fit(int row, int column, const SamplePlace& place,
                                   RowQueries* queries) const {
   see_lamps(point);
   std::vector<Eigen::Matrix2d> turns(shares.size(), Eigen::Matrix2d::Zero());
+  const std::array<SeenPoint, 2> beside = steps_on_plane(*point, gradients_.at(row, column));
   for (std::size_t lamp = 0; lamp < shares.size(); ++lamp) {
     SeenLamp& seen = point->lamps[lamp];
     seen.visible *= shares[lamp];
     seen.incident.irradiance *= shares[lamp];
     if (seen.visible > 0 && pixels_.takes_first_order[point->material])
-      turns[lamp] = turn_at(row, column, lamp, *point);
+      turns[lamp] = turn_at(row, column, lamp, *point, beside);
   }
   viewer_.ask(*point, sigma_pixels_, place, turns, queries);
 }
@@ -307,10 +305,32 @@ bool BufferBlock::ask_fit(const PixelFit& fitted, std::size_t lamp, const SeenPo
   return true;
 }
 
-Eigen::Matrix2d BufferBlock::turn_at(int row, int column, std::size_t lamp, const SeenPoint& point) const {
+/// What would be seen a small step along each axis of the surface's plane, if it went on as that.
+std::array<SeenPoint, 2> BufferBlock::steps_on_plane(const SeenPoint& point,
+                                                     const SurfaceGradient& gradient) const {
+  std::array<SeenPoint, 2> beside = {point, point};
+  for (std::size_t axis = 0; axis < beside.size(); ++axis) {
+    SeenPoint& moved = beside[axis];
+    moved.hit->position += kPlaneStep * point.hit->t * (axis == 0 ? gradient.x : gradient.y);
+    moved.ray = view_.camera.sight(moved.hit->position).ray;
+    moved.to_eye = -moved.ray.direction.normalized();
+    moved.lamps.clear();
+    see_lamps(&moved);
+  }
+  return beside;
+}
+
+/// As on the plane, and besides what neighbours say of how the normal turns along the lines to them.
+Eigen::Matrix2d BufferBlock::turn_at(int row, int column, std::size_t lamp, const SeenPoint& point,
+                                     const std::array<SeenPoint, 2>& beside) const {
   const std::vector<Eigen::Vector2d>& offsets = FitStencil::centers().offsets();
   const SurfaceGradient& gradient = gradients_.at(row, column);
-  PlaneGradient along_surface;
+  const Eigen::Vector2d& half_vector = point.lamps[lamp].half_vector;
+  Eigen::Matrix2d on_plane = Eigen::Matrix2d::Zero();
+  for (Eigen::Index axis = 0; axis < 2; ++axis)
+    if (const SeenLamp& seen = beside[static_cast<std::size_t>(axis)].lamps[lamp]; seen.visible > 0)
+      on_plane.col(axis) = (seen.half_vector - half_vector) / (kPlaneStep * point.hit->t);
+  PlaneGradient of_normal;
   for (std::size_t n = 1; n < offsets.size(); ++n) {
     if (!gradient.is_near[n]) continue;
     const int down = row + static_cast<int>(offsets[n].y()),
@@ -318,13 +338,15 @@ Eigen::Matrix2d BufferBlock::turn_at(int row, int column, std::size_t lamp, cons
     const Probe& other = probes_.at(down, right);
     if (!other.faces_eye || !(other.lamps[lamp].visible > 0)) continue;
     const Eigen::Vector3d step = buffer_.pixels.at(down, right).position.cast<double>() - point.hit->position;
-    along_surface.add(gradient.on_plane(step), other.lamps[lamp].half_vector - point.lamps[lamp].half_vector,
-                      offsets[n].squaredNorm());
+    const Eigen::Vector2d place = gradient.on_plane(step);
+    of_normal.add(place, other.lamps[lamp].half_vector - half_vector - on_plane * place,
+                  offsets[n].squaredNorm());
   }
   const Eigen::Matrix2d repeat_inverse =
       viewer_.shared->materials[point.material].repeat.cwiseInverse().asDiagonal();
   // The half vector's change a pixel, by the change of uv a pixel that belongs to it.
-  const Eigen::Matrix2d change = along_surface.value() * gradient.duv.inverse() * repeat_inverse * point.duv;
+  const Eigen::Matrix2d change =
+      (on_plane + of_normal.value()) * gradient.duv.inverse() * repeat_inverse * point.duv;
   const double least = kLeastTurn * point.lamps[lamp].seen.roughness / sigma_pixels_;
   return change.norm() > least ? turn_over(point.duv, change) : Eigen::Matrix2d(Eigen::Matrix2d::Zero());
 }

@@ -15,7 +15,8 @@ namespace {
 constexpr double kGaussianReach = 3;   // standard deviations
 constexpr double kLatticeSigma = 0.6;  // of subpixels: the ripple of their sum is 2 exp(-2 (0.6 pi)^2)
 constexpr double kReferenceReach = 4, kReferenceSigma = 0.8;  // the same for a reference
-constexpr double kSubpixelSigma = 0.5;                        // of FilterKind::subpixels
+constexpr double kLayerBoxSigma = 0.4;  // of a box: 0.5 is 8% wider than 4 subpixels of it, this one 4%
+constexpr double kSubpixelSigma = 0.5;  // of FilterKind::subpixels
 
 double gaussian(double x, double sigma) {
   return std::exp(-0.5 * x * x / (sigma * sigma)) / (sigma * std::sqrt(2 * kPi));
@@ -94,6 +95,13 @@ Eigen::VectorXd weights_of(const Eigen::MatrixXd& gram, const Eigen::VectorXd& r
 
 }  // namespace
 
+double FilterSum::variance() const {
+  double variance = sigma_pixels * sigma_pixels;
+  for (std::size_t n = 0; n < weights.size(); ++n)
+    variance += weights[n] * offsets_pixels[n] * offsets_pixels[n];
+  return variance;
+}
+
 FilterSum fit_gaussians(double (*density)(double x, double width), double width, double reach, double sigma,
                         std::size_t count, double spacing) {
   FilterSum sum;
@@ -134,6 +142,12 @@ PixelFilter PixelFilter::for_reference(int subpixels) const {
   return filter;
 }
 
+PixelFilter PixelFilter::for_layer() const {
+  PixelFilter filter = *this;
+  filter.is_for_layer_ = true;
+  return filter;
+}
+
 double PixelFilter::density(double offset_pixels) const {
   switch (description_.kind) {
     case FilterKind::gaussian:
@@ -151,7 +165,7 @@ double PixelFilter::density(double offset_pixels) const {
 double PixelFilter::reach_pixels() const {
   const bool reference = reference_subpixels_ > 0;
   if (description_.kind == FilterKind::gaussian)
-    return (reference ? kReferenceReach : kGaussianReach) * description_.width;
+    return (reference || is_for_layer_ ? kReferenceReach : kGaussianReach) * description_.width;
   if (description_.kind != FilterKind::subpixels) return description_.width / 2;
   return reference ? 0.5 + (kReferenceReach - 1) * kSubpixelSigma / reference_subpixels_ : 0.5;
 }
@@ -175,7 +189,8 @@ FilterSum PixelFilter::whole_lattice(int subpixels) const {
     case FilterKind::blackman_harris:
       return fit_gaussians(blackman_harris, width, width / 2, sigma, count, spacing);
     case FilterKind::box:
-      return fit_gaussians(box, width, width / 2, kSubpixelSigma * spacing, count, spacing);
+      return fit_gaussians(box, width, width / 2, (is_for_layer_ ? kLayerBoxSigma : kSubpixelSigma) * spacing,
+                           count, spacing);
     case FilterKind::subpixels:
       break;
   }

@@ -30,6 +30,8 @@ struct FilterSum {
   std::vector<double> offsets_pixels;  ///< from the pixel's centre, ascending
   std::vector<double> weights;         ///< not negative; they add up to 1
   double relative_l2 = 0;              ///< of the sum against the filter, along the axis
+
+  double variance() const;  ///< along an axis, pixels^2
 };
 
 /// A pixel's filter.
@@ -42,9 +44,14 @@ class PixelFilter {
   /// @param subpixels a pixel that define FilterKind::subpixels; the other kinds do not depend on them.
   PixelFilter for_reference(int subpixels) const;
 
+  /// The same filter for images that were sampled by somebody else on one lattice, all of which is summed:
+  /// less of a Gaussian is cut off, and a box is widened less.
+  PixelFilter for_layer() const;
+
   /// Along one axis, its integral being 1; of `subpixels` with 4 of them, if not for a reference with others.
   double density(double offset_pixels) const;
-  /// Light from further away along an axis has no weight, or less than 0.3% in all; 0.01% for a reference.
+  /// Light from further away along an axis has no weight, or less than 0.3% in all; 0.01% for a reference
+  /// or a layer.
   double reach_pixels() const;
   /// Pixels beyond a pixel whose light it sees, along an axis.
   int margin_pixels() const;
@@ -60,6 +67,7 @@ class PixelFilter {
 
   FilterDescription description_;
   int reference_subpixels_ = 0;  // for a reference: that define the kind of that name; else 0
+  bool is_for_layer_ = false;
 };
 
 /// The sum of `count` Gaussians of `sigma`, `spacing` apart, nearest to `density` in the mean square, with

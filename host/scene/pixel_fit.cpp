@@ -17,13 +17,6 @@ using Values = FitStencil::Values;
 constexpr double kMaxCondition = 50;  // of uv over the pixel; footprints of more than 100 are shortened
 constexpr double kWholePeriod = 0.5;  // sigma in periods from which on place says nothing of the normal
 
-double variance_of(const FilterSum& filter) {
-  double variance = filter.sigma_pixels * filter.sigma_pixels;
-  for (std::size_t n = 0; n < filter.weights.size(); ++n)
-    variance += filter.weights[n] * filter.offsets_pixels[n] * filter.offsets_pixels[n];
-  return variance;
-}
-
 }  // namespace
 
 Probe probe_of(const SeenPoint& point) {
@@ -132,7 +125,7 @@ Color PixelFit::radiance(const FilterSum& filter) const {
 }
 
 Footprint PixelFit::footprint(const FilterSum& filter) const {
-  const double variance = variance_of(filter);
+  const double variance = filter.variance();
   const Eigen::Matrix2d cov = variance * Eigen::Matrix2d::Identity();
   Eigen::Matrix2d duv;
   duv << u_.slope.transpose(), v_.slope.transpose();
@@ -260,7 +253,7 @@ bool PixelFit::ask(std::size_t lamp, const FilterSum& filter, const FitLimits& l
                    std::vector<GlintQuery>* queries) const {
   const LampFit fitted = fit_lamp(lamp);
   const std::optional<Frame> whole =
-      frame_of({{0, 0}, variance_of(filter) * Eigen::Matrix2d::Identity(), 1}, fitted);
+      frame_of({{0, 0}, filter.variance() * Eigen::Matrix2d::Identity(), 1}, fitted);
   if (!whole) return false;
   const double limit2 = std::pow(limits.relative_l2, 2) - third_order(fitted, *whole);
   if (!(limit2 >= 0)) return false;

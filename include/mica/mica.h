@@ -6,6 +6,7 @@
 #include "mica/device.h"     // IWYU pragma: export
 #include "mica/error.h"      // IWYU pragma: export
 #include "mica/evaluator.h"  // IWYU pragma: export
+#include "mica/glints.h"     // IWYU pragma: export
 #include "mica/job.h"        // IWYU pragma: export
 #include "mica/method.h"     // IWYU pragma: export
 #include "mica/query.h"      // IWYU pragma: export

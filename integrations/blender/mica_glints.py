@@ -86,7 +86,8 @@ class MicaGlintsScene(bpy.types.PropertyGroup):
     tolerance: FloatProperty(name="Tolerance", default=0.01, min=5e-4, max=0.5, precision=4,
                              description="Relative error that the method 'auto' may make")
     scale: IntProperty(name="Scale", default=1, min=1, max=16,
-                       description="The G-buffer has so many times the picture's width and height: cleaner edges")
+                       description="The G-buffer has so many times the picture's width and height: cleaner edges. "
+                                   "1, or 4 and more: 2 and 3 are too few for Blender's own filter")
     shadow_samples: IntProperty(name="Shadow samples", default=64, min=1, max=4096,
                                 description="A pixel, for the lamps' visibility")
 

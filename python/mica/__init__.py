@@ -13,6 +13,7 @@ from mica._answers import Energy, Samples
 from mica._device import devices
 from mica._errors import DeviceError, Error, FileError, UsageError
 from mica._evaluator import Evaluator
+from mica._glints import GlintLayer, glints
 from mica._grid import Grid
 from mica._image import Image
 from mica._job import Job
@@ -34,6 +35,8 @@ __all__ = [
     "methods",
     "Job",
     "Image",
+    "glints",
+    "GlintLayer",
     "devices",
     "DeviceInfo",
     "bench",

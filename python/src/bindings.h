@@ -51,6 +51,7 @@ void bind_maps(nb::module_& module);
 void bind_evaluators(nb::module_& module);
 void bind_brdfs(nb::module_& module);
 void bind_jobs(nb::module_& module);
+void bind_glints(nb::module_& module);
 void bind_methods(nb::module_& module);
 
 }  // namespace mica::python

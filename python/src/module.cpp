@@ -34,5 +34,6 @@ NB_MODULE(_mica, module) {
   bind_evaluators(module);
   bind_brdfs(module);
   bind_jobs(module);
+  bind_glints(module);
   bind_methods(module);
 }

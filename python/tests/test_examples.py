@@ -7,6 +7,8 @@ import sys
 import numpy as np
 import pytest
 
+from conftest import run_command
+
 
 @pytest.fixture
 def example(root, tmp_path):
@@ -23,7 +25,7 @@ def example(root, tmp_path):
 
 def test_every_example_is_run(root):
     names = {path.name for path in (root / "python" / "examples").glob("*.py")}
-    assert names == {"pndf_sheet.py", "speed_and_error.py", "training_set.py", "beside_mitsuba.py", "notebook.py"}
+    assert names == {"pndf_sheet.py", "speed_and_error.py", "training_set.py", "beside_mitsuba.py", "notebook.py", "glint_layer.py"}
 
 
 def test_sheet(example, tmp_path):
@@ -38,6 +40,14 @@ def test_speed_and_error(example):
     assert errors["triangles"] == 0
     assert 0 < errors["pyramid"] < 0.05
     assert 0 < errors["gaussians"] < 0.1
+
+
+def test_glint_layer_is_that_of_the_command(example, tmp_path):
+    assert "to be added" in example("glint_layer.py", 48)
+    words = ["gbuffer.exr", "--scene", "scene.toml", "-o", "command.exr", "--aovs", "D,coverage"]
+    done = run_command("glints", *words, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "layer.exr").read_bytes() == (tmp_path / "command.exr").read_bytes()
 
 
 def test_notebook(example):

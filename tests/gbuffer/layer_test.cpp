@@ -1,71 +1,15 @@
 // Layers from the G-buffers of shapes that have formulas, against the pictures of the same shapes.
+#include <Eigen/LU>
 #include <cmath>
 
-#include "host/gbuffer/glint_layer.h"
-#include "host/image/stored_picture.h"
-#include "tests/gbuffer/analytic_buffer.h"
-#include "tests/image/folder.h"
+#include "tests/gbuffer/layer_fixture.h"
 
 namespace mica::host::layer_test {
 namespace {
 
 using namespace analytic_buffer;
 
-constexpr char kSphere[] = "type = \"sphere\"", kPlane[] = "type = \"plane\", size = 4";
-
-class Layer : public FolderTest {
- protected:
-  void write(const std::string& file, const std::string& text) const { std::ofstream(path(file)) << text; }
-
-  LayerResult make(const Image& buffer, const Camera& camera, const LayerSettings& settings = {},
-                   int rows_a_block = 0, const std::string& scene = materials()) {
-    write_exr(path("g.exr"), buffer);
-    write("g.json", view(camera));
-    return make(path("g"), {}, settings, rows_a_block, scene);
-  }
-
-  /// @param name of the buffer's file and of its camera's, without extensions.
-  LayerResult make(const std::string& name, const BufferOptions& options, const LayerSettings& settings,
-                   int rows_a_block, const std::string& scene) {
-    write("scene.toml", scene);
-    const BufferView seen = read_view(name + ".json");
-    Job job = load_job(path("scene.toml"), {}, MethodRegistry::builtin(), 0, JobUse::layer);
-    GBuffer opened(name + ".exr", seen, job.scene.materials, settings.scale, options);
-    job = layer_job(job, seen, opened.window(), settings);
-    Plan plan = make_plan(job);
-    if (rows_a_block > 0) plan.rows_a_block = rows_a_block;
-    LayerResult result =
-        write_glint_layer(path("layer.exr"), job, plan, &opened, seen, settings, device_, [](int, int) {});
-    layer_.emplace(path("layer.exr"));
-    return result;
-  }
-
-  Image picture(const std::string& text) {
-    write("job.toml", text);
-    const Job job = load_job(path("job.toml"), {});
-    return render(job, make_plan(job), device_, [](int, int) {}).image;
-  }
-
-  std::vector<float> channel(const std::string& name) {
-    const std::vector<FileChannel>& all = layer_->channels();
-    for (int n = 0; n < static_cast<int>(all.size()); ++n)
-      if (all[static_cast<std::size_t>(n)].name == name) return layer_->read(0, layer_->window().height, {n});
-    ADD_FAILURE() << "no channel " << name;
-    return {};
-  }
-
-  static std::vector<float> channel(const Image& image, const std::string& name) {
-    const auto found = std::find(image.channels.begin(), image.channels.end(), name);
-    std::vector<float> values;
-    for (auto n = static_cast<std::size_t>(found - image.channels.begin()); n < image.pixels.size();
-         n += image.channels.size())
-      values.push_back(image.pixels[n]);
-    return values;
-  }
-
-  Device device_{0};
-  std::optional<ChannelFile> layer_;
-};
+class Layer : public LayerTest {};
 
 /// Relative differences where the picture fits a pixel by one footprint, and the buffer has all its
 /// neighbours; or at its border alone, where neighbours on one side are missing.
@@ -191,25 +135,6 @@ TEST_F(Layer, OfBlendersPlaneLooksAsItsPicture) {
   EXPECT_LT(densities.largest, 0.02);
 }
 
-TEST_F(Layer, OfFourTimesThePixelsLooksAsThePicture) {
-  Camera fine{{5, 1, 1.5}};
-  const Camera camera = fine;
-  fine.width *= 4, fine.height *= 4;
-  LayerSettings settings;
-  settings.scale = 4;
-  settings.aovs = {LayerAov::coverage};
-  make(analytic_buffer::buffer(fine, sphere), fine, settings);
-  const std::vector<float> found = channel("G"), expected = channel(picture(job(camera, kSphere)), "G");
-  ASSERT_EQ(found.size(), expected.size());
-  double difference2 = 0, square = 0;  // at rims as well
-  for (std::size_t n = 0; n < found.size(); ++n) {
-    difference2 += std::pow(found[n] - expected[n], 2);
-    square += std::pow(expected[n], 2);
-  }
-  EXPECT_LT(std::sqrt(difference2 / square), 0.02);
-  for (const float share : channel("coverage")) EXPECT_TRUE(share >= 0 && share <= 1.0001f) << share;
-}
-
 TEST_F(Layer, IsTheSameForAnyBlockSize) {
   const Camera camera{{5, 1, 1.5}};
   const Image buffer = analytic_buffer::buffer(camera, sphere);
@@ -264,6 +189,91 @@ TEST_F(Layer, CountsPixelsWithoutNeighbours) {
   const LayerResult result = make(buffer, camera);
   EXPECT_EQ(result.counts.covered, 1u);
   EXPECT_EQ(result.counts.alone, 1u);
+}
+
+/// Changes of uv a pixel, or those of the position a unit of uv, beside a buffer's channels.
+Image with_derivatives(const Image& buffer, const Camera& camera, const Shape& shape, bool of_position) {
+  constexpr double step = 1e-4;  // pixels, or uv of the sphere's and the plane's square
+  Image image = buffer;
+  image.pixels.clear();
+  const std::vector<std::string> names =
+      of_position ? std::vector<std::string>{"dp_du.X", "dp_du.Y", "dp_du.Z", "dp_dv.X", "dp_dv.Y", "dp_dv.Z"}
+                  : std::vector<std::string>{"duv_dx.U", "duv_dx.V", "duv_dy.U", "duv_dy.V"};
+  image.channels.insert(image.channels.end(), names.begin(), names.end());
+  for (int row = 0; row < camera.height; ++row)
+    for (int column = 0; column < camera.width; ++column) {
+      const auto* here =
+          &buffer.pixels[static_cast<std::size_t>(row * camera.width + column) * buffer.channels.size()];
+      image.pixels.insert(image.pixels.end(), here, here + buffer.channels.size());
+      const auto at = [&](double down, double right) {
+        return shape(camera.position, camera.direction(row, column) +
+                                          camera.pixel() * (right * camera.right() - down * camera.up()));
+      };
+      const auto middle = at(0, 0), right = at(0, step), down = at(step, 0);
+      if (!middle || !right || !down) {
+        image.pixels.insert(image.pixels.end(), names.size(), std::nanf(""));
+        continue;
+      }
+      Eigen::Matrix2d duv;
+      duv << (right->uv - middle->uv) / step, (down->uv - middle->uv) / step;
+      Eigen::Matrix<double, 3, 2> dp;
+      dp << (right->position - middle->position) / step, (down->position - middle->position) / step;
+      const Eigen::Matrix<double, 3, 2> dpduv = dp * duv.inverse();
+      const double* first = of_position ? dpduv.data() : duv.data();
+      for (std::size_t n = 0; n < names.size(); ++n) image.pixels.push_back(static_cast<float>(first[n]));
+    }
+  return image;
+}
+
+/// Every third pixel of every third row is all that there is of the surface.
+void leave_some(Image* buffer) {
+  for (int row = 0; row < buffer->height; ++row)
+    for (int column = 0; column < buffer->width; ++column)
+      if (row % 3 != 1 || column % 3 != 1)
+        buffer
+            ->pixels[static_cast<std::size_t>(row * buffer->width + column) * buffer->channels.size() + kId] =
+            0;
+}
+
+TEST_F(Layer, OfPixelsAloneHasTheFootprintsOfDerivatives) {
+  const Camera camera{{0.5, -4, 3}};
+  const Image buffer = analytic_buffer::buffer(camera, plane);
+  const std::vector<float> expected = channel(picture(job(camera, kPlane)), "ndf.Y");
+  const float brightest = *std::max_element(expected.begin(), expected.end());
+  LayerSettings settings;
+  settings.aovs = {LayerAov::density};
+  for (const bool of_position : {false, true}) {
+    Image some = with_derivatives(buffer, camera, plane, of_position);
+    leave_some(&some);
+    const LayerResult result = make(some, camera, settings);
+    EXPECT_GT(result.counts.covered, 100u);
+    EXPECT_EQ(result.counts.alone, 0u);
+    EXPECT_EQ(result.counts.one_sided, result.counts.covered);
+    const std::vector<float> found = channel("D");
+    double sum = 0;
+    int pixels = 0;
+    for (std::size_t n = 0; n < found.size(); ++n) {
+      if (some.pixels[n * some.channels.size() + kId] != 1 || expected[n] <= 0.01f * brightest) continue;
+      sum += std::abs(found[n] / expected[n] - 1), ++pixels;
+    }
+    EXPECT_GT(pixels, 20);
+    EXPECT_LT(sum / pixels, 0.02) << of_position;
+  }
+}
+
+TEST_F(Layer, TakesNeighboursWhereDerivativesAreNone) {
+  const Camera camera{{0.5, -4, 3}};
+  const Image buffer = analytic_buffer::buffer(camera, plane);
+  make(buffer, camera);
+  const std::vector<float> expected = channel("R");
+  for (const bool of_position : {false, true}) {
+    Image none = with_derivatives(buffer, camera, plane, of_position);
+    for (std::size_t n = 0; n < none.pixels.size(); n += none.channels.size())
+      for (std::size_t k = buffer.channels.size(); k < none.channels.size(); ++k)
+        none.pixels[n + k] = n / none.channels.size() % 2 == 0 ? std::nanf("") : 0;
+    make(none, camera);
+    EXPECT_EQ(channel("R"), expected) << of_position;
+  }
 }
 
 /// Every method answers, each with light that is a number and not all black.

@@ -1,8 +1,11 @@
 // Bad input of `mica glints`: each has its exit code and a message that helps, and leaves no file.
 #include <OpenImageIO/imageio.h>
 
+#include <cmath>
 #include <regex>
 
+#include "mica/error.h"
+#include "mica/glints.h"
 #include "tests/app/command.h"
 #include "tests/gbuffer/analytic_buffer.h"
 
@@ -81,6 +84,37 @@ TEST_F(Glints, ReadPartsAsOnePart) {
   const Image one = read_rgb(path("one.exr")), many = read_rgb(path("many.exr"));
   EXPECT_EQ(one.pixels, many.pixels);
   EXPECT_NE(bytes(path("many.json")).find("\"covered\": "), std::string::npos);
+}
+
+TEST_F(Glints, AreThoseOfTheLibrary) {
+  write_buffer();
+  const Outcome outcome = mica(
+      "glints g.exr --scene scene.toml -o command.exr --scale 2 --aovs D,coverage --per-lamp --filter-width "
+      "0.6");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  GlintSettings settings;
+  settings.scale = 2, settings.filter_width = 0.6, settings.per_lamp = true;
+  settings.aovs = {"D", "coverage"};
+  const auto written = [&](const std::string& buffer) {
+    return write_glints(mica::Device(), path(buffer), path("scene.toml"), path("layer.exr"), settings);
+  };
+  const GlintLayer layer = written("g.exr");
+  EXPECT_EQ(bytes(path("layer.exr")), bytes(path("command.exr")));
+  EXPECT_EQ(layer.channels,
+            (std::vector<std::string>{"R", "G", "B", "A", "D", "coverage", "bulb.R", "bulb.G", "bulb.B"}));
+  EXPECT_GT(layer.covered, layer.one_sided);
+  EXPECT_GT(layer.queries, 0u);
+  settings.filter = "tent";
+  EXPECT_THROW(written("g.exr"), UsageError);
+  settings.filter = "box", settings.filter_width = std::nan("");
+  EXPECT_THROW(written("g.exr"), UsageError);
+  settings.filter_width = 0, settings.scale = 0;
+  EXPECT_THROW(written("g.exr"), UsageError);
+  settings.scale = 1;
+  EXPECT_THROW(written("none.exr"), FileError);
+  const std::string before = bytes(path("g.exr"));
+  EXPECT_THROW(write_glints(mica::Device(), path("g.exr"), path("scene.toml"), path("g.exr")), UsageError);
+  EXPECT_EQ(bytes(path("g.exr")), before);
 }
 
 TEST_F(Glints, RefuseHalfFloats) {

@@ -30,7 +30,7 @@ HOST_EDGES = {
     "tables": "base surface",
     "measure": "base microfacet image surface device reference methods scene job render",
     "report": "base image surface device methods scene job render measure",
-    "library": "base microfacet image surface device reference methods scene job render",
+    "library": "base microfacet image surface device reference methods scene job render gbuffer",
     "app": "base microfacet image surface device reference methods scene job render gbuffer tables verify measure report",
     "main.cpp": "base app",
 }

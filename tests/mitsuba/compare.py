@@ -3,7 +3,7 @@
     compare.py MICA FOLDER [NAME...]
 
 Prints, a pair: Mica's total over Mitsuba's, a channel, and the relative L2 of pixels beside its bound. Exit code 1 if a
-total is off by more than 0.5%, or an L2 is above its bound."""
+total is off by more than 0.5%, or an L2 is above its bound. Then the layers of layers.py."""
 
 import math
 import pathlib
@@ -13,6 +13,7 @@ import sys
 import mitsuba as mi
 import numpy as np
 
+from layers import compare_layer, layers, write_maps
 from pairs import Pair, T, pairs
 
 SIZE = 48
@@ -73,11 +74,18 @@ def main(program, folder, *names):
     folder = pathlib.Path(folder).resolve()
     folder.mkdir(parents=True, exist_ok=True)
     write_inputs(folder)
-    chosen = [pair for pair in pairs(folder) if not names or any(name in pair.name for name in names)]
+    write_maps(folder)
+
+    def chosen_of(all):
+        return [one for one in all if not names or any(name in one.name for name in names)]
+
+    chosen = chosen_of(pairs(folder))
     print(f"pair {'':45} Mica's total over Mitsuba's  L2")
     bad = [pair.name for pair in chosen if not compare(program, folder, pair)]
-    print(f"{len(chosen)} pairs, {len(bad)} bad")
-    return 1 if bad or not chosen else 0
+    chosen_layers = chosen_of(layers())
+    bad += [layer.name for layer in chosen_layers if not compare_layer(program, folder, layer)]
+    print(f"{len(chosen)} pairs and {len(chosen_layers)} layers, {len(bad)} bad")
+    return 1 if bad or not chosen + chosen_layers else 0
 
 
 if __name__ == "__main__":
