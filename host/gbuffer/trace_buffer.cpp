@@ -22,8 +22,9 @@
 namespace mica::host {
 namespace {
 
-constexpr int kMostParts = 16;       // of a pixel and lamp, as of a picture's four subpixels
-constexpr double kPlaneStep = 1e-5;  // of the distance to the eye: less than a pixel
+constexpr int kMostParts = 16;        // of a pixel and lamp, as of a picture's four subpixels
+constexpr double kMostLeftOut = 0.3;  // by a fit, relative L2; beyond it there is none
+constexpr double kPlaneStep = 1e-5;   // of the distance to the eye: less than a pixel
 
 /// Where a layer's rows lie in a G-buffer.
 struct LayerPart {
@@ -96,6 +97,7 @@ class BufferBlock {
   bool ask_fit(const PixelFit& fitted, std::size_t lamp, const SeenPoint& point, double share,
                const SamplePlace& place, RowQueries* queries) const;
   std::array<SeenPoint, 2> steps_on_plane(const SeenPoint& point, const SurfaceGradient& gradient) const;
+  bool turns_linearly(int row, int column, const SeenPoint& point) const;
   Eigen::Matrix2d turn_at(int row, int column, std::size_t lamp, const SeenPoint& point,
                           const std::array<SeenPoint, 2>& beside) const;
   void cover();
@@ -254,11 +256,12 @@ void BufferBlock::ask_without_fit(int row, int column, const SamplePlace& place,
   see_lamps(point);
   std::vector<Eigen::Matrix2d> turns(shares.size(), Eigen::Matrix2d::Zero());
   const std::array<SeenPoint, 2> beside = steps_on_plane(*point, gradients_.at(row, column));
+  const bool is_linear = turns_linearly(row, column, *point);
   for (std::size_t lamp = 0; lamp < shares.size(); ++lamp) {
     SeenLamp& seen = point->lamps[lamp];
     seen.visible *= shares[lamp];
     seen.incident.irradiance *= shares[lamp];
-    if (seen.visible > 0 && pixels_.takes_first_order[point->material])
+    if (seen.visible > 0 && is_linear && pixels_.takes_first_order[point->material])
       turns[lamp] = turn_at(row, column, lamp, *point, beside);
   }
   viewer_.ask(*point, sigma_pixels_, place, turns, queries);
@@ -289,14 +292,13 @@ bool BufferBlock::all_see(int row, int column, std::size_t lamp) const {
   return true;
 }
 
-/// A fit that keeps the tolerance, or else one that does without its second order.
+/// A fit that keeps the tolerance, or else the best that there is while it is one at all.
 bool BufferBlock::ask_fit(const PixelFit& fitted, std::size_t lamp, const SeenPoint& point, double share,
                           const SamplePlace& place, RowQueries* queries) const {
   std::vector<GlintQuery> asked;
   const FitLimits limits{pixels_.tolerance, kMostParts};
-  const FitLimits none{std::numeric_limits<double>::infinity(), kMostParts};
-  if (!fitted.ask(lamp, filter_, limits, &asked) && !fitted.ask(lamp, filter_, none, &asked))
-    return false;
+  const FitLimits most{kMostLeftOut, kMostParts};
+  if (!fitted.ask(lamp, filter_, limits, &asked) && !fitted.ask(lamp, filter_, most, &asked)) return false;
   for (GlintQuery& query : asked) {
     query.pixel = place.pixel, query.sample = place.sample, query.material = point.material;
     query.weight *= static_cast<float>(share);
@@ -318,6 +320,22 @@ std::array<SeenPoint, 2> BufferBlock::steps_on_plane(const SeenPoint& point,
     see_lamps(&moved);
   }
   return beside;
+}
+
+/// Whether half vectors turn linearly over a footprint: not towards rims, where nothing does.
+bool BufferBlock::turns_linearly(int row, int column, const SeenPoint& point) const {
+  const std::vector<Eigen::Vector2d>& offsets = FitStencil::centers().offsets();
+  const double cosine = point.frame.z.dot(point.to_eye);
+  for (std::size_t n = 1; n < offsets.size(); ++n) {
+    if (!gradients_.at(row, column).is_near[n]) continue;
+    const int down = row + static_cast<int>(offsets[n].y()),
+              right = column + static_cast<int>(offsets[n].x());
+    const Eigen::Vector3d position = buffer_.pixels.at(down, right).position.cast<double>();
+    const Eigen::Vector3d to_eye = -view_.camera.sight(position).ray.direction.normalized();
+    const double change = std::abs(probes_.at(down, right).normal.dot(to_eye) - cosine) / offsets[n].norm();
+    if (!(sigma_pixels_ * change < kMostForeshortening * cosine)) return false;
+  }
+  return true;
 }
 
 /// As on the plane, and besides what neighbours say of how the normal turns along the lines to them.

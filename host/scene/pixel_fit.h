@@ -15,6 +15,10 @@ namespace mica::host {
 /// A half vector that turns less over a footprint, in standard deviations of the lobe, is taken as constant.
 constexpr double kLeastTurn = 0.005;
 
+/// Where the cosine between normal and eye changes more over a footprint, of itself, nothing is linear any
+/// more, and half vectors are taken as constant: towards rims.
+constexpr double kMostForeshortening = 0.1;
+
 /// What a pixel's fit needs of a point that a ray met.
 struct Probe {
   static constexpr std::uint64_t kNothing = ~std::uint64_t{0};

@@ -20,9 +20,6 @@ namespace {
 /// 0.23.
 constexpr double kMostPenumbraResidual = 0.12;
 
-/// Of the cosine between normal and eye, over a sample's footprint, of itself.
-constexpr double kMostForeshortening = 0.1;
-
 /// What a fitted pixel shows; unset: it needs samples.
 struct FittedPixel {
   Color radiance = Color::Zero();
