@@ -9,6 +9,36 @@
 namespace mica::host {
 namespace {
 
+/// Bytes of attributes whose type says them: OpenEXR reads so many, whatever their header has.
+struct TypeSize {
+  const char* type;
+  std::int32_t bytes;
+};
+constexpr TypeSize kTypeSizes[] = {{"box2f", 16},
+                                   {"box2i", 16},
+                                   {"chromaticities", 32},
+                                   {"compression", 1},
+                                   {"deepImageState", 1},
+                                   {"double", 8},
+                                   {"envmap", 1},
+                                   {"float", 4},
+                                   {"int", 4},
+                                   {"keycode", 28},
+                                   {"lineOrder", 1},
+                                   {"m33d", 72},
+                                   {"m33f", 36},
+                                   {"m44d", 128},
+                                   {"m44f", 64},
+                                   {"rational", 8},
+                                   {"tiledesc", 9},
+                                   {"timecode", 8},
+                                   {"v2d", 16},
+                                   {"v2f", 8},
+                                   {"v2i", 8},
+                                   {"v3d", 24},
+                                   {"v3f", 12},
+                                   {"v3i", 12}};
+
 /// Reads the attributes of OpenEXR headers, enough of them to know the size of what they declare.
 class ExrHeaders {
  public:
@@ -42,6 +72,7 @@ class ExrHeaders {
       if (size < 0 ||
           static_cast<std::uintmax_t>(begin) + static_cast<std::uintmax_t>(size) > format_.file_size)
         damaged();
+      check_size(type, size);
       if (type == "box2i" && name == "dataWindow") {
         for (std::int64_t& bound : window) bound = integer();
       } else if (type == "chlist") {
@@ -57,6 +88,31 @@ class ExrHeaders {
       stream_.seekg(begin + size);
     }
     declared_.width = window[2] - window[0] + 1, declared_.height = window[3] - window[1] + 1;
+  }
+
+  /// OpenEXR takes memory for what the value of an attribute says, too.
+  void check_size(const std::string& type, std::int32_t size) {
+    for (const TypeSize& known : kTypeSizes)
+      if (type == known.type && size != known.bytes) damaged();
+    if (type == "preview") {
+      const std::streamoff begin = stream_.tellg();
+      const std::uint64_t width = static_cast<std::uint32_t>(integer()),
+                          height = static_cast<std::uint32_t>(integer());
+      const auto room = static_cast<std::uint64_t>(size);
+      if (width * height > room || room != 8 + 4 * width * height) damaged();
+      stream_.seekg(begin);
+    }
+    if (type == "stringvector") {
+      const std::streamoff begin = stream_.tellg();
+      for (std::int32_t left = size; left > 0;) {
+        const std::int32_t length = integer();
+        left -= 4;
+        if (length < 0 || length > left) damaged();
+        stream_.seekg(length, std::ios::cur);
+        left -= length;
+      }
+      stream_.seekg(begin);
+    }
   }
 
   std::string text() {
