@@ -43,7 +43,8 @@ def write_inputs(folder):
 
 def render_mica(program, folder, pair: Pair):
     path = folder / "pair.toml"
-    path.write_text(f"[image]\nwidth = {SIZE}\nheight = {SIZE}\n{pair.image}"
+    # Nearest to a box filter, which is exact in Mitsuba; its Gaussian is a table of 31 values.
+    path.write_text(f"[image]\nfilter = \"subpixels\"\nwidth = {SIZE}\nheight = {SIZE}\n{pair.image}"
                     f"[camera]\nposition = {pair.eye}\nlook_at = {pair.target}\nup = {pair.up}\nfov = {pair.fov}\n{pair.job}")
     done = subprocess.run([program, "render", path, "-o", folder / "pair.exr", "--quiet"], capture_output=True, text=True)
     if done.returncode:
