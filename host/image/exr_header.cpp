@@ -94,6 +94,12 @@ class ExrHeaders {
   void check_size(const std::string& type, std::int32_t size) {
     for (const TypeSize& known : kTypeSizes)
       if (type == known.type && size != known.bytes) damaged();
+    if (type == "chlist") {  // it is read up to an empty name
+      const std::streamoff begin = stream_.tellg();
+      count_channels();
+      if (stream_.tellg() != begin + size) damaged();
+      stream_.seekg(begin);
+    }
     if (type == "preview") {
       const std::streamoff begin = stream_.tellg();
       const std::uint64_t width = static_cast<std::uint32_t>(integer()),

@@ -42,7 +42,9 @@ TEST_F(ExrAttributes, OfASizeThatTheirTypeHasNotAreDamage) {
         attribute("preview", "preview", little_endian(20000) + little_endian(20000)),
         attribute("preview", "preview", little_endian(1u << 31) + little_endian(2)),
         attribute("views", "stringvector", little_endian(1u << 30) + "left"),
-        attribute("views", "stringvector", little_endian(~0u) + "left")})
+        attribute("views", "stringvector", little_endian(~0u) + "left"),
+        attribute("mine", "chlist", std::string("B\0", 2) + std::string(16, '\0')),
+        attribute("mine", "chlist", std::string(3, '\0'))})
     EXPECT_NE(said_of(path("a.exr"), broken).find("header is damaged"), std::string::npos)
         << broken << ": " << said_of(path("a.exr"), broken);
 }
@@ -52,6 +54,7 @@ TEST_F(ExrAttributes, OfTheirOwnSizeAreNot) {
        {attribute("displayWindow", "box2i", std::string(16, '\0')),
         attribute("preview", "preview", little_endian(1) + little_endian(1) + "rgba"),
         attribute("views", "stringvector", little_endian(4) + "left" + little_endian(5) + "right"),
+        attribute("mine", "chlist", std::string("B\0", 2) + std::string(17, '\0')),
         attribute("mine", "my own type", "anything")})
     EXPECT_EQ(said_of(path("a.exr"), whole).find("header is damaged"), std::string::npos)
         << whole << ": " << said_of(path("a.exr"), whole);
