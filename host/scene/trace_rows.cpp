@@ -247,7 +247,8 @@ std::optional<Eigen::Matrix2d> half_vector_change(const std::vector<SeenPoint>& 
       return points[static_cast<std::size_t>(index)].lamps[lamp].half_vector;
     };
     const auto cosine = [&](int step) {
-      const SeenPoint& point = points[static_cast<std::size_t>(k + step * stride[axis])];
+      const int index = k + step * stride[axis];
+      const SeenPoint& point = points[static_cast<std::size_t>(index)];
       return point.frame.z.dot(point.to_eye);
     };
     const double foreshortened = std::abs(cosine(ends[1]) - cosine(ends[0])) * n / (ends[1] - ends[0]);
