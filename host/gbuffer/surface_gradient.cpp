@@ -114,4 +114,19 @@ SurfaceGradient surface_gradient(const Rectangle<BufferPixel>& pixels, int row, 
   return gradient;
 }
 
+Hit hit_of(const BufferPixel& pixel, const SurfaceGradient& gradient) {
+  Hit hit;
+  hit.position = pixel.position.cast<double>();
+  hit.normal = pixel.normal.cast<double>(), hit.face_normal = pixel.face_normal.cast<double>();
+  hit.uv = pixel.uv.cast<double>();
+  hit.dpdu = hit.dpdv = Eigen::Vector3d::Zero();
+  if (gradient.is_known) {
+    const Eigen::Matrix2d inverse = gradient.duv.inverse();
+    hit.dpdu = inverse(0, 0) * gradient.x + inverse(1, 0) * gradient.y;
+    hit.dpdv = inverse(0, 1) * gradient.x + inverse(1, 1) * gradient.y;
+  }
+  hit.tangent = pixel.tangent.isZero(0) ? hit.dpdu : Eigen::Vector3d(pixel.tangent.cast<double>());
+  return hit;
+}
+
 }  // namespace mica::host

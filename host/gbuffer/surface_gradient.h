@@ -4,6 +4,7 @@
 #include <array>
 
 #include "host/gbuffer/gbuffer.h"
+#include "host/scene/hit.h"
 
 namespace mica::host {
 
@@ -40,5 +41,9 @@ class PlaneGradient {
 
 /// Of the pixel at a place that has a material. Pixels around it have to be there.
 SurfaceGradient surface_gradient(const Rectangle<BufferPixel>& pixels, int row, int column);
+
+/// Where the eye meets a pixel's surface, but for its distance, shape and part. Of a gradient that is not
+/// known uv do not change.
+Hit hit_of(const BufferPixel& pixel, const SurfaceGradient& gradient);
 
 }  // namespace mica::host
