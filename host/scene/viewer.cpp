@@ -6,21 +6,6 @@
 #include "host/scene/wrap.h"
 
 namespace mica::host {
-StaticScene::StaticScene(const SceneDescription& description)
-    : geometry(description.shapes),
-      background(description.background, &findings),
-      environment(description.environments, &findings),
-      shows_environment(description.background.is_environment),
-      materials(description.materials),
-      part_materials(materials_of_parts(description, geometry)),
-      glints(description.materials.size()) {
-  for (const auto& parts : part_materials)
-    for (const std::uint32_t n : parts)
-      if (materials[n].glints && !glints[n]) glints[n].emplace(materials[n]);
-  for (std::size_t n = 0; n < materials.size() && description.shapes.empty(); ++n)
-    if (materials[n].glints && materials[n].id) glints[n].emplace(materials[n]);
-}
-
 namespace {
 
 /// Covariance on the disk of a lobe that half vectors of some covariance widen; none where it is round.
@@ -40,6 +25,21 @@ std::optional<Eigen::Matrix2d> long_lobe(double roughness, const TangentFrame& f
 
 }  // namespace
 
+StaticScene::StaticScene(const SceneDescription& description)
+    : geometry(description.shapes),
+      background(description.background, &findings),
+      environment(description.environments, &findings),
+      shows_environment(description.background.is_environment),
+      materials(description.materials),
+      part_materials(materials_of_parts(description, geometry)),
+      glints(description.materials.size()) {
+  for (const auto& parts : part_materials)
+    for (const std::uint32_t n : parts)
+      if (materials[n].glints && !glints[n]) glints[n].emplace(materials[n]);
+  for (std::size_t n = 0; n < materials.size() && description.shapes.empty(); ++n)
+    if (materials[n].glints && materials[n].id) glints[n].emplace(materials[n]);
+}
+
 SeenLamp Viewer::see(const LightDescription& light, const SeenPoint& point,
                      const std::vector<Eigen::Vector2d>& light_samples) const {
   const TangentFrame& frame = point.frame;
@@ -51,6 +51,7 @@ SeenLamp Viewer::see(const LightDescription& light, const SeenPoint& point,
   const std::size_t rays = has_extent(light) ? light_samples.size() : 1;
   const ShadowRays to_light(light, point.hit->position);
   std::vector<ShadowRay> above;
+  above.reserve(rays);
   for (std::size_t n = 0; n < rays; ++n) {
     const ShadowRay ray = to_light.to(light_samples[n]);
     if (ray.direction.dot(frame.face_normal) >= kMinCosine) above.push_back(ray);

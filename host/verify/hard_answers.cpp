@@ -177,7 +177,7 @@ class AnswerCount {
   HardAnswers* answers_;
 };
 
-/// The questions that the method takes; others are counted as wrong.
+/// The questions that the method takes; the others are counted, see AnswerCount::refuse.
 std::vector<Query> taken(const Method& method, const Surface& surface, double most_texels,
                          std::uint64_t first, std::uint64_t count, AnswerCount* answers) {
   std::vector<Query> queries;
@@ -196,14 +196,17 @@ void ask_densities(const Method& method, Device* device, const Surface& surface,
                    std::uint64_t count, HardAnswers* answers) {
   const std::unique_ptr<Evaluator> evaluator = method.make(device, &surface, *method.settings());
   AnswerCount answered(answers);
+  bool calibrated = false;
   for (std::uint64_t done = 0; done < count; done += kBatch) {
     check_interrupt();
     const std::vector<Query> queries =
         taken(method, surface, kMostTexels, first + done, std::min(kBatch, count - done), &answered);
+    if (queries.empty()) continue;
     answered.ask(queries.size(), queries.front(), [&] {
-      if (done == 0)
+      if (!calibrated)
         evaluator->calibrate(
             queries.size(), [&](std::size_t n) { return queries[n]; }, 1);
+      calibrated = true;
       const std::vector<float> densities = evaluator->evaluate(queries);
       for (std::size_t n = 0; n < queries.size(); ++n)
         answered.add(is_right(densities[n]), fmt::format("D = {}", densities[n]), queries[n]);
@@ -220,6 +223,7 @@ void ask_hard_brdf(const Method& method, Device* device, const Surface& surface,
     check_interrupt();
     const std::vector<Query> queries =
         taken(method, surface, kMostTexelsOfBrdf, first + done, std::min(kBatch, count - done), &answered);
+    if (queries.empty()) continue;
     std::vector<BrdfQuery> values;
     std::vector<ViewQuery> views;
     std::vector<SampleQuery> draws;

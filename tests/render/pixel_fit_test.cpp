@@ -67,6 +67,30 @@ TEST(PixelFit, SplitsFootprintsThatBend) {
   EXPECT_LT(error(split, fine), 0.6 * error(one, fine));
 }
 
+/// Of a whole small ball; half vectors that were carried on linearly over its rim made it glow.
+TEST(PixelFit, ABallIsAsBrightAsByManySamples) {
+  const std::vector<std::string> ball = {
+      "camera.position=[0, -4, 0]",
+      "camera.look_at=[0, 0, 0]",
+      "camera.fov=32",
+      "material.a.roughness=0.1",
+      "material.a.ndf=smooth",
+      "image.width=24",
+      "image.height=24",
+      "light=[{ type = \"directional\", direction = [0.5, 1, -0.4], irradiance = [3, 3, 3] }]"};
+  const auto brightness = [&](std::vector<std::string> overrides) {
+    overrides.insert(overrides.end(), ball.begin(), ball.end());
+    const Image image = render_job(overrides).image;
+    double sum = 0;
+    for (int row = 0; row < image.height; ++row)
+      for (int column = 0; column < image.width; ++column) sum += green(image, row, column);
+    return sum;
+  };
+  const double many = brightness({"image.filter=subpixels", "image.subpixels=16"});
+  for (const char* subpixels : {"image.subpixels=2", "image.subpixels=4"})
+    EXPECT_NEAR(brightness({subpixels}), many, 0.03 * many) << subpixels;
+}
+
 TEST(PixelFit, IsTheSameForAnyBlockSize) {
   const RenderResult whole = render_job({}, kSize);
   for (const int rows : {1, 7}) EXPECT_EQ(render_job({}, rows).image.pixels, whole.image.pixels) << rows;

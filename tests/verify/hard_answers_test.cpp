@@ -7,6 +7,7 @@
 
 #include "host/methods/evaluator.h"
 #include "host/methods/method.h"
+#include "host/methods/ready_densities.h"
 #include "host/verify/hard_answers.h"
 
 namespace mica::host::hard_answers_test {
@@ -43,15 +44,7 @@ class Constant : public Evaluator {
  public:
   explicit Constant(float density) : density_(density) {}
   std::unique_ptr<PendingDensities> start(const std::vector<Query>& queries) override {
-    class Pending : public PendingDensities {
-     public:
-      explicit Pending(std::vector<float> densities) : densities_(std::move(densities)) {}
-      std::vector<float> wait() override { return densities_; }
-
-     private:
-      std::vector<float> densities_;
-    };
-    return std::make_unique<Pending>(std::vector<float>(queries.size(), density_));
+    return std::make_unique<ReadyDensities>(std::vector<float>(queries.size(), density_));
   }
   std::string name() const override { return "constant"; }
   std::size_t device_bytes() const override { return 0; }

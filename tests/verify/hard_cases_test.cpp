@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "host/methods/ready_densities.h"
 #include "host/methods/registry.h"
 #include "host/verify/hard_directions.h"
 #include "host/verify/judge.h"
@@ -84,17 +85,9 @@ class Wrong : public Evaluator {
  public:
   Wrong(Evaluator* right, float factor) : right_(right), factor_(factor) {}
   std::unique_ptr<PendingDensities> start(const std::vector<Query>& queries) override {
-    class Pending : public PendingDensities {
-     public:
-      explicit Pending(std::vector<float> densities) : densities_(std::move(densities)) {}
-      std::vector<float> wait() override { return densities_; }
-
-     private:
-      std::vector<float> densities_;
-    };
     std::vector<float> densities = right_->evaluate(queries);
     for (float& density : densities) density *= factor_;
-    return std::make_unique<Pending>(std::move(densities));
+    return std::make_unique<ReadyDensities>(std::move(densities));
   }
   std::string name() const override { return "wrong"; }
   std::size_t device_bytes() const override { return 0; }
