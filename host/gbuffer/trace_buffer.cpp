@@ -364,7 +364,7 @@ void BufferBlock::cover() {
   rows_.coverage.assign(rows_.radiance.size(), 0);
   for (std::size_t pixel = 0; pixel < rows_.coverage.size(); ++pixel) {
     double share = 0;
-    rows_.lattice.sum(static_cast<int>(pixel / width), static_cast<int>(pixel % width),
+    rows_.lattice.sum(static_cast<int>(pixel / width), static_cast<int>(pixel % width), rows_.lattice.all(),
                       [&](std::size_t sample, double weight) { share += weight * covered_[sample]; });
     rows_.coverage[pixel] = static_cast<float>(share);
   }

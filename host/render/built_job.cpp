@@ -47,6 +47,7 @@ BuiltJob::BuiltJob(const Job& job, const Plan& plan, Device& device, int frame, 
     : job_(job),
       plan_(plan),
       device_(device),
+      traces_otherwise_(trace),
       trace_(trace ? std::move(trace)
                    : [](const Scene& scene, int first_row,
                         int row_count) { return scene.trace(first_row, row_count); }),

@@ -35,6 +35,7 @@ class BuiltJob {
   const Job& job() const { return job_; }
   const Plan& plan() const { return plan_; }
   const Scene& scene() const { return scene_; }
+  bool sees_scene() const { return !traces_otherwise_; }  ///< by the scene's camera; not TraceRows of others
   TracedRows trace(int first_row, int row_count) const { return trace_(scene_, first_row, row_count); }
   /// By PlannedEvaluator; only one that asks for densities.
   Evaluator& evaluator(std::size_t n) const { return *evaluators_[n]; }
@@ -80,6 +81,7 @@ class BuiltJob {
   const Job& job_;
   const Plan& plan_;
   Device& device_;
+  bool traces_otherwise_;
   TraceRows trace_;
   int frame_;
   double surface_seconds_ = 0, scene_seconds_ = 0, build_seconds_ = 0;
@@ -105,6 +107,7 @@ class PendingBlock {
 
   /// Once waited for, the weights of glints are tinted by their colours.
   const TracedRows& rows() const { return rows_; }
+  TracedRows& rows() { return rows_; }
   /// D of every query, in the order of rows().queries. Call once.
   std::vector<float> wait();
 

@@ -21,19 +21,26 @@ void blacken_what_is_not_finite(std::vector<Eigen::Vector3d>* light, FilmRepairs
 
 }  // namespace
 
+std::vector<Eigen::Vector3d> sample_radiance_of(const TracedRows& rows, const std::vector<float>& densities,
+                                                FilmRepairs* repairs) {
+  std::vector<Eigen::Vector3d> radiance(rows.sample_radiance.size());
+  for (std::size_t n = 0; n < radiance.size(); ++n) radiance[n] = rows.sample_radiance[n].cast<double>();
+  for (std::size_t n = 0; n < densities.size(); ++n)
+    if (const GlintQuery& glint = rows.queries[n]; glint.sample != GlintQuery::kNone)
+      radiance[glint.sample] += glint.weight.cast<double>() * static_cast<double>(densities[n]);
+  blacken_what_is_not_finite(&radiance, repairs);  // before neighbouring pixels share them
+  return radiance;
+}
+
 std::vector<Eigen::Vector3d> radiance_of(const TracedRows& rows, const std::vector<float>& densities,
                                          FilmRepairs* repairs) {
-  std::vector<Eigen::Vector3d> radiance(rows.radiance.size()), sample_radiance(rows.sample_radiance.size());
+  std::vector<Eigen::Vector3d> radiance(rows.radiance.size());
   for (std::size_t pixel = 0; pixel < radiance.size(); ++pixel)
     radiance[pixel] = rows.radiance[pixel].cast<double>();
-  for (std::size_t n = 0; n < sample_radiance.size(); ++n)
-    sample_radiance[n] = rows.sample_radiance[n].cast<double>();
-  for (std::size_t n = 0; n < densities.size(); ++n) {
-    const GlintQuery& glint = rows.queries[n];
-    (glint.sample == GlintQuery::kNone ? radiance[glint.pixel] : sample_radiance[glint.sample]) +=
-        glint.weight.cast<double>() * static_cast<double>(densities[n]);
-  }
-  blacken_what_is_not_finite(&sample_radiance, repairs);  // before neighbouring pixels share them
+  for (std::size_t n = 0; n < densities.size(); ++n)
+    if (const GlintQuery& glint = rows.queries[n]; glint.sample == GlintQuery::kNone)
+      radiance[glint.pixel] += glint.weight.cast<double>() * static_cast<double>(densities[n]);
+  const std::vector<Eigen::Vector3d> sample_radiance = sample_radiance_of(rows, densities, repairs);
   add_samples(rows, sample_radiance, &radiance);
   blacken_what_is_not_finite(&radiance, repairs);
   for (Eigen::Vector3d& color : radiance) {

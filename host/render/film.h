@@ -15,6 +15,10 @@ struct FilmRepairs {
   std::size_t negative = 0;    ///< light of pixels
 };
 
+/// The light of samples; see radiance_of.
+std::vector<Eigen::Vector3d> sample_radiance_of(const TracedRows& rows, const std::vector<float>& densities,
+                                                FilmRepairs* repairs);
+
 /// The light of traced pixels; `densities` in the order of their queries, in which they are summed, in double
 /// precision. What single precision cannot say becomes black: a lamp may be as near, or a pixel as small, as
 /// its numbers allow.

@@ -9,6 +9,7 @@
 #include "host/base/random.h"
 #include "host/methods/auto/sampled_error.h"
 #include "host/render/film.h"
+#include "host/render/luminance.h"
 
 namespace mica::host {
 namespace {
@@ -18,10 +19,6 @@ constexpr int kFewestSubpixels = 4;            // of a reference
 constexpr int kMostSubpixels = 32;             // likewise
 constexpr double kAgreementOfTolerance = 0.1;  // of two references
 constexpr double kQuantile = 1.6449;           // of the normal distribution, at 95%
-
-double luminance(const Eigen::Vector3d& color) {
-  return color.dot(Eigen::Vector3d(0.2126, 0.7152, 0.0722));
-}
 
 struct DrawnPixel {
   int row, column;

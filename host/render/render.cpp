@@ -10,6 +10,7 @@
 #include "host/render/built_job.h"
 #include "host/render/film.h"
 #include "host/render/gather_light.h"
+#include "host/render/refinement.h"
 #include "mica/version.h"
 
 namespace mica::host {
@@ -48,6 +49,7 @@ void evaluate_rows(const BuiltJob& built, const RowRange& rows, const RenderProg
   const std::vector<std::string>& channels = built.plan().channels;
   const bool wants_errors = std::find(channels.begin(), channels.end(), "error.Y") != channels.end();
   const int end = rows.first + rows.count;
+  Refinement refinement(built);
   std::optional<PendingBlock> in_flight;
   for (int row = rows.first; row < end || in_flight; row += rows_a_block) {
     std::optional<PendingBlock> next;
@@ -64,6 +66,9 @@ void evaluate_rows(const BuiltJob& built, const RowRange& rows, const RenderProg
       const Stopwatch waiting;
       const std::vector<float> densities = in_flight->wait();
       result->seconds.wait += waiting.seconds();
+      const Stopwatch refining;
+      result->queries += refinement.refine(&in_flight->rows(), densities);
+      result->seconds.refine += refining.seconds();
       take(in_flight->rows(), densities,
            wants_errors ? estimate_errors(built, in_flight->rows(), densities) : std::vector<float>());
       offer(in_flight->rows(), densities, built.plan(), built.job().image.width, sampler);
@@ -72,6 +77,7 @@ void evaluate_rows(const BuiltJob& built, const RowRange& rows, const RenderProg
     }
     in_flight = std::move(next);
   }
+  result->refined_pixels = refinement.refined_pixels();
   result->seconds.render = total.seconds();
 }
 

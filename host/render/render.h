@@ -19,9 +19,10 @@ namespace mica::host {
 
 /// Wall-clock seconds by phase. `render` is tracing and evaluating together, which overlap; `trace` and
 /// `wait` are the host's shares of it: tracing rows, and waiting for densities that were not ready; `gather`
-/// is gathering light from all around, on both.
+/// is gathering light from all around, on both; `refine` sampling pixels more densely, likewise.
 struct PhaseSeconds {
-  double surfaces = 0, scene = 0, build = 0, render = 0, trace = 0, gather = 0, wait = 0, audit = 0;
+  double surfaces = 0, scene = 0, build = 0, render = 0, trace = 0, gather = 0, refine = 0, wait = 0,
+         audit = 0;
   double total = 0;
 };
 
@@ -32,8 +33,9 @@ struct RenderResult {
   Plan plan;
   PhaseSeconds seconds;
   std::size_t queries = 0;
-  std::size_t device_bytes = 0;  ///< of all structures, as allocated
-  double device_seconds = 0;     ///< that kernels ran, by the device's clock
+  std::size_t refined_pixels = 0;  ///< see Refinement
+  std::size_t device_bytes = 0;    ///< of all structures, as allocated
+  double device_seconds = 0;       ///< that kernels ran, by the device's clock
   std::vector<AuditedSample> audited;
   AuditedPixels audited_pixels;
   AuditResult audit;  ///< of queries

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <vector>
 
 #include "host/scene/pixel_filter.h"
@@ -22,12 +24,21 @@ struct Lattice {
            static_cast<std::size_t>(column + margin);
   }
 
-  /// Calls add(sample, weight) for all that a pixel of the block sees, in an order that is always the same.
+  /// Pixels at some distances from a pixel, along the axis along which they are further away.
+  struct Rings {
+    int nearest, farthest;
+  };
+  Rings all() const { return {0, margin}; }
+
+  /// Calls add(sample, weight) for all that a pixel of the block sees in some rings about it, in an order
+  /// that is always the same.
   template <typename Add>
-  void sum(int row, int column, const Add& add) const {
+  void sum(int row, int column, const Rings& rings, const Add& add) const {
     const auto n = static_cast<std::size_t>(subpixels);
     for (int down = -margin; down <= margin; ++down)
       for (int right = -margin; right <= margin; ++right) {
+        const int ring = std::max(std::abs(down), std::abs(right));
+        if (ring < rings.nearest || ring > rings.farthest) continue;
         const std::uint32_t first = first_sample[cell(row + down, column + right)];
         const double* down_weights = &filter.weights[static_cast<std::size_t>(down + margin) * n];
         const double* right_weights = &filter.weights[static_cast<std::size_t>(right + margin) * n];

@@ -60,7 +60,7 @@ void add_samples(const TracedRows& rows, const std::vector<Eigen::Vector3d>& sam
   for (std::size_t pixel = 0; pixel < radiance->size(); ++pixel)
     if (!rows.fitted[pixel])
       rows.lattice.sum(
-          static_cast<int>(pixel / width), static_cast<int>(pixel % width),
+          static_cast<int>(pixel / width), static_cast<int>(pixel % width), rows.lattice.all(),
           [&](std::size_t sample, double weight) { (*radiance)[pixel] += weight * sample_radiance[sample]; });
 }
 
@@ -162,6 +162,13 @@ TracedRows Scene::trace(int first_row, int row_count) const {
     throw UsageError(
         fmt::format("rows {} to {} of an image of {} rows", first_row, first_row + row_count, self.height));
   return trace_rows(self.viewer, self.pixels, {self.width, self.height, first_row, row_count, 0, self.width});
+}
+
+TracedRows Scene::sample(int first_row, int row_count, const std::vector<bool>& which,
+                         const PixelSettings& pixels) const {
+  const Implementation& self = *implementation_;
+  return sample_rows(self.viewer, pixels, {self.width, self.height, first_row, row_count, 0, self.width},
+                     which);
 }
 
 TracedRows Scene::trace_pixel(int row, int column, const PixelSettings& pixels) const {

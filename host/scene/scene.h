@@ -111,6 +111,12 @@ class Scene {
   /// @param pixels without fits; of any number of subpixels.
   TracedRows trace_pixel(int row, int column, const PixelSettings& pixels) const;
 
+  /// Samples what some pixels of rows see in themselves and in the pixels around them.
+  /// @param which of the rows' pixels; all stay black, but for their samples.
+  /// @param pixels without fits; of any number of subpixels.
+  TracedRows sample(int first_row, int row_count, const std::vector<bool>& which,
+                    const PixelSettings& pixels) const;
+
   const Viewer& viewer() const;
   const PixelSettings& pixels() const;
   /// What was assumed and repaired in the images of backgrounds and environments.

@@ -48,6 +48,23 @@ class BlockTracer {
   TracedRows trace() {
     if (rows_.row_count == 0) return std::move(rows_);
     if (pixels_.fits) fit_pixels();
+    return take_samples();
+  }
+
+  /// @param which pixels need samples.
+  TracedRows sample(const std::vector<bool>& which) {
+    for (int row = first_seen_; row < end_seen_; ++row)
+      for (int column = 0; column < width_; ++column) {
+        const bool of_rows = row >= 0 && row < rows_.row_count;
+        if (!of_rows || !which[static_cast<std::size_t>(row * width_ + column)])
+          fits_.at(row, column).emplace();
+      }
+    sampled_around_ = std::min(margin_, 1);
+    return take_samples();
+  }
+
+ private:
+  TracedRows take_samples() {
     place_samples();
     const int places = rows_.row_count + 2 * margin_;
     std::vector<RowQueries> queries(static_cast<std::size_t>(places));
@@ -61,7 +78,6 @@ class BlockTracer {
     return std::move(rows_);
   }
 
- private:
   using Fits = Rectangle<std::optional<FittedPixel>>;
 
   /// A number for a place of the image; inside it that of the pixel.
@@ -99,6 +115,7 @@ class BlockTracer {
   const FilterSum lattice_filter_ = pixels_.filter.on_lattice(pixels_.subpixels);
   const FilterSum few_ = pixels_.filter.by_few();
   const int margin_ = pixels_.filter.margin_pixels(), reach_ = std::max(margin_, 1);
+  int sampled_around_ = margin_;     // pixels about one that needs samples
   const int first_seen_, end_seen_;  // pixels of the image that the block has to know of
   TracedRows rows_;
   Fits fits_;
@@ -141,14 +158,15 @@ std::optional<FittedPixel> BlockTracer::fit(int row, int column) const {
 
 /// Pixels without a fit need the samples of all pixels that their filter reaches.
 void BlockTracer::place_samples() {
+  const int around = sampled_around_;
   Lattice& lattice = rows_.lattice;
   lattice.first_sample.assign(lattice.cell(rows_.row_count + margin_, -margin_), Lattice::kNone);
   std::uint32_t count = 0;
   for (int row = -margin_; row < rows_.row_count + margin_; ++row)
     for (int column = -margin_; column < width_ + margin_; ++column) {
       bool needed = false;
-      for (int down = -margin_; down <= margin_ && !needed; ++down)
-        for (int right = -margin_; right <= margin_ && !needed; ++right) {
+      for (int down = -around; down <= around && !needed; ++down)
+        for (int right = -around; right <= around && !needed; ++right) {
           const bool of_block = row >= 0 && row < rows_.row_count;
           // What lies outside of the block is there for the block alone.
           const int other = row + down;
@@ -280,6 +298,11 @@ std::vector<std::vector<Eigen::Matrix2d>> BlockTracer::turns_of(const std::vecto
 
 TracedRows trace_rows(const Viewer& viewer, const PixelSettings& pixels, const ImagePart& part) {
   return BlockTracer(viewer, pixels, part).trace();
+}
+
+TracedRows sample_rows(const Viewer& viewer, const PixelSettings& pixels, const ImagePart& part,
+                       const std::vector<bool>& which) {
+  return BlockTracer(viewer, pixels, part).sample(which);
 }
 
 }  // namespace mica::host

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "host/render/built_job.h"
+
+namespace mica::host {
+
+/// Pixels that no fit stands for are sums of samples; where a silhouette, the edge of a shadow or a sharp rim
+/// crosses a glint, sixteen of them share it or miss it. Such pixels, few, have nearly all of a picture's
+/// error. They are sampled again, four times as densely along both axes, where that may change them by more
+/// than the picture's tolerance allows a pixel.
+///
+/// How much that is rests on pixels spread over the whole picture, and whether a pixel needs it on its own
+/// samples: a pixel does not depend on what else is rendered.
+class Refinement {
+ public:
+  /// At the frame of `built`, which must outlive it. Nothing is refined in pictures without fits.
+  explicit Refinement(const BuiltJob& built);
+
+  /// Refines pixels of rows: they are as fitted ones then, with nothing but radiance.
+  /// @param densities in the order of their queries. @return how many queries that took.
+  std::size_t refine(TracedRows* rows, const std::vector<float>& densities);
+
+  std::size_t refined_pixels() const { return refined_; }  ///< so far
+
+ private:
+  const BuiltJob& built_;
+  double most_change_ = 0;  ///< of a pixel's luminance
+  std::size_t refined_ = 0;
+};
+
+}  // namespace mica::host
