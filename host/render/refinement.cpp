@@ -14,7 +14,7 @@ namespace {
 constexpr std::uint64_t kLooks = 0x6c6f6f6b;  // a stream of random numbers
 constexpr int kLooksAlong = 16;               // rows that are looked at, and pixels of each
 constexpr int kLookSubpixels = 2;             // of those pixels
-constexpr int kFinerBy = 4;                   // along each axis
+constexpr int kFinestBy = 4;                  // along each axis
 /// Of the root mean square of a picture and its tolerance: a change of a pixel that may stay, in a picture
 /// 160 pixels wide. The pixels that need samples lie along lines: the wider a picture is the fewer they are.
 constexpr double kChangeOfTolerance = 4, kWidth = 160;
@@ -125,17 +125,28 @@ std::size_t Refinement::refine(TracedRows* rows, const std::vector<float>& densi
   });
   if (count == 0) return queries;
   refined_ += count;
+  std::vector<Eigen::Vector3d> shown(doubtful.size());
+  each_doubtful([&](std::size_t pixel, int row, int column) {
+    shown[pixel] = coarse.sum(row, column, rows->lattice.all());
+  });
   PixelSettings pixels = built_.scene().pixels();
   pixels.fits = false;
-  pixels.subpixels *= kFinerBy;
-  const Samples fine = sample(built_, rows->first_row, rows->row_count, doubtful, pixels, &queries);
-  each_doubtful([&](std::size_t pixel, int row, int column) {
-    // What is further away has hardly any weight, and stays.
-    const Eigen::Vector3d color =
-        fine.sum(row, column, kNear) + coarse.sum(row, column, {kNear.farthest + 1, rows->lattice.margin});
-    rows->fitted[pixel] = 1;
-    rows->radiance[pixel] = color.cast<float>();
-  });
+  const int finest = kFinestBy * pixels.subpixels;
+  while (pixels.subpixels < finest && count > 0) {
+    pixels.subpixels *= 2;
+    const Samples fine = sample(built_, rows->first_row, rows->row_count, doubtful, pixels, &queries);
+    count = 0;
+    each_doubtful([&](std::size_t pixel, int row, int column) {
+      // What is further away has hardly any weight, and stays.
+      const Eigen::Vector3d color =
+          fine.sum(row, column, kNear) + coarse.sum(row, column, {kNear.farthest + 1, rows->lattice.margin});
+      doubtful[pixel] = std::abs(luminance(color - shown[pixel])) > most_change_;
+      count += doubtful[pixel] ? 1 : 0;
+      shown[pixel] = color;
+      rows->fitted[pixel] = 1;
+      rows->radiance[pixel] = color.cast<float>();
+    });
+  }
   return queries;
 }
 

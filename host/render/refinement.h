@@ -9,8 +9,8 @@ namespace mica::host {
 
 /// Pixels that no fit stands for are sums of samples; where a silhouette, the edge of a shadow or a sharp rim
 /// crosses a glint, sixteen of them share it or miss it. Such pixels, few, have nearly all of a picture's
-/// error. They are sampled again, four times as densely along both axes, where that may change them by more
-/// than the picture's tolerance allows a pixel.
+/// error. They are sampled again, twice and then four times as densely along both axes, where that may change
+/// them by more than the picture's tolerance allows a pixel.
 ///
 /// How much that is rests on pixels spread over the whole picture, and whether a pixel needs it on its own
 /// samples: a pixel does not depend on what else is rendered.
