@@ -24,6 +24,7 @@ static inline int lowest_bit(uint bits) {
 typedef float wave_float;
 typedef int wave_int;
 typedef uint wave_uint;
+#define WAVE_KERNEL kernel
 #define WAVE_SHARED local
 #define WAVE_DECLARE_SCRATCH(name) local int name[WAVE_LANES]
 #define WAVE_ITEM_INDEX ((int)get_group_id(0))
@@ -105,6 +106,9 @@ typedef int4 wave_quarter_int_anywhere __attribute__((aligned(4)));
 typedef int16 wave_int_anywhere __attribute__((aligned(4)));
 typedef short16 wave_short_anywhere __attribute__((aligned(2)));
 typedef char16 wave_char_anywhere __attribute__((aligned(1)));
+// Compilers that spread neighbouring work-items over a vector are told that each has vectors of its own:
+// Intel's runtime would take them apart, at a fifteenth of the speed.
+#define WAVE_KERNEL kernel __attribute__((vec_type_hint(float16)))
 #define WAVE_SHARED private
 #define WAVE_DECLARE_SCRATCH(name) int name[1]
 #define WAVE_ITEM_INDEX ((int)get_global_id(0))
