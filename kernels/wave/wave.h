@@ -21,6 +21,10 @@ static inline int lowest_bit(uint bits) {
 
 #if MICA_WAVE_ITEMS
 
+// Local memory that reaches a function which is not inlined is the same for all groups on PoCL 3.1, whose
+// threads then write over each other's: docs/devices.md.
+#define inline inline __attribute__((always_inline))
+
 typedef float wave_float;
 typedef int wave_int;
 typedef uint wave_uint;
