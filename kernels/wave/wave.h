@@ -21,9 +21,11 @@ static inline int lowest_bit(uint bits) {
 
 #if MICA_WAVE_ITEMS
 
-// Local memory that reaches a function which is not inlined is the same for all groups on PoCL 3.1, whose
-// threads then write over each other's: docs/devices.md.
+// PoCL 3.1 gives all groups the same local memory in functions that are not inlined, and its threads write
+// over each other's: docs/devices.md. Elsewhere that is left to the compiler: Intel's cannot take all in one.
+#ifdef POCL_DEVICE_ADDRESS_BITS
 #define inline inline __attribute__((always_inline))
+#endif
 
 typedef float wave_float;
 typedef int wave_int;
