@@ -1,5 +1,5 @@
-// Local memory that reaches a function which is not inlined: each group sums its own number sixteen times, ten
-// thousand times. PoCL 3.1 with two threads or more gets some sums wrong; local_memory.py runs this.
+// Local memory that reaches a function which is not inlined: each group sums its own number sixteen times,
+// ten thousand times. PoCL 3.1 with two threads or more gets some sums wrong; local_memory.py runs this.
 __attribute__((noinline)) static int sum_of(int value, local int* shared) {
   shared[get_local_id(0)] = value;
   barrier(CLK_LOCAL_MEM_FENCE);
