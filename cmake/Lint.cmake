@@ -42,6 +42,7 @@ foreach(file ${kernel_programs} ${kernel_headers})
       # What processors with AVX2 alone run; with all else it is as it is without.
       if(NOT wave_items)
         list(APPEND commands COMMAND ${compile_kernel} -mavx2 -mfma -mbmi2 ${file})
+        list(APPEND commands COMMAND ${compile_kernel} -DMICA_NATIVE=1 ${file})
       endif()
       foreach(interpolation 0 1 2)
         list(APPEND commands COMMAND ${compile_kernel} -DMICA_WAVE_ITEMS=${wave_items}

@@ -6,7 +6,7 @@
 namespace mica::host::app {
 
 std::string wave_form_name(const DeviceInfo& info) {
-  return info.is_cpu ? "vectors" : "items";
+  return std::string(word_of(default_wave_form(info)));
 }
 
 nlohmann::json describe_device(const DeviceInfo& info) {

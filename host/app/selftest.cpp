@@ -137,12 +137,13 @@ nlohmann::json to_json(const std::vector<Check>& checks) {
   return list;
 }
 
-int run(const DeviceOption& option, double evaluations, const std::string& json_path,
-        const MethodRegistry& methods) {
+int run(const DeviceOption& option, const std::string& waves, double evaluations,
+        const std::string& json_path, const MethodRegistry& methods) {
   const Outputs outputs({json_path});
   const int device_index = option.index();
-  Device device(device_index);
-  fmt::print("device {}: {}, {}\n\n", device_index, device.info().name, device.info().version);
+  Device device(device_index, parse_word<WaveForm>(waves));
+  fmt::print("device {}: {}, {}, waves as {}\n\n", device_index, device.info().name, device.info().version,
+             word_of(device.wave_form()));
   fmt::print("{:<48} {:>8} {:>14}\n", "check", "points", "error/allowed");
   std::vector<Check> checks;
   const auto take = [&checks](const std::vector<Check>& more) {
@@ -175,6 +176,7 @@ int run(const DeviceOption& option, double evaluations, const std::string& json_
   if (!json_path.empty())
     write_json(json_path, {{"command", "selftest"},
                            {"device", describe_device(device.info())},
+                           {"waves", word_of(device.wave_form())},
                            {"checks", to_json(checks)},
                            {"arithmetic", arithmetic_json(arithmetic)},
                            {"hard_cases", hard_cases_json(hard)},
@@ -189,6 +191,7 @@ void add_selftest(CommandLine& app, Command* chosen, const MethodRegistry& metho
   auto device = std::make_shared<DeviceOption>();
   auto json_path = std::make_shared<std::string>();
   auto evaluations = std::make_shared<double>(0);
+  auto waves = std::make_shared<std::string>();
   CommandLine* command =
       app.add_subcommand("selftest", "Checks the accuracy of a device's arithmetic and of every kernel");
   command->footer(
@@ -200,6 +203,9 @@ void add_selftest(CommandLine& app, Command* chosen, const MethodRegistry& metho
       "density\n"
       "of its draws.");
   add_device_option(command, device.get());
+  command->add_option("--waves", *waves, "Kernels in this form of a wave; default: what suits the device")
+      .type_name("NAME")
+      .check(one_of(list_words<WaveForm>()));
   command->add_option("--json", *json_path, "Writes the checks as JSON").type_name("FILE");
   command
       ->add_option(
@@ -208,8 +214,9 @@ void add_selftest(CommandLine& app, Command* chosen, const MethodRegistry& metho
           "that at random: 1e8 takes two hours or so")
       .type_name("N")
       .check(between(0.0, 1e12));
-  command->callback(
-      [=, &methods] { *chosen = [=, &methods] { return run(*device, *evaluations, *json_path, methods); }; });
+  command->callback([=, &methods] {
+    *chosen = [=, &methods] { return run(*device, *waves, *evaluations, *json_path, methods); };
+  });
 }
 
 }  // namespace mica::host::app

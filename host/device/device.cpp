@@ -88,7 +88,12 @@ std::vector<DeviceInfo> list_devices() {
   return infos;
 }
 
-Device::Device(int index) : device_(choose(index)), info_(describe(device_)) {
+WaveForm default_wave_form(const DeviceInfo& info) {
+  return info.is_cpu ? WaveForm::vectors : WaveForm::items;
+}
+
+Device::Device(int index, std::optional<WaveForm> form)
+    : device_(choose(index)), info_(describe(device_)), wave_form_(form.value_or(default_wave_form(info_))) {
   try {
     context_ = cl::Context(device_);
     queue_ = cl::CommandQueue(context_, device_, CL_QUEUE_PROFILING_ENABLE);

@@ -5,9 +5,11 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "host/base/words.h"
 #include "host/device/opencl.h"
 
 namespace mica::host {
@@ -35,6 +37,12 @@ std::vector<DeviceInfo> list_devices();
 
 /// How the sixteen lanes of a wave are mapped to a device; see kernels/wave/wave.h.
 enum class WaveForm { vectors, items };
+template <>
+struct Words<WaveForm> {
+  static constexpr Word<WaveForm> all[] = {{"vectors", WaveForm::vectors}, {"items", WaveForm::items}};
+};
+/// The form that suits a device: vectors a CPU, items all others.
+WaveForm default_wave_form(const DeviceInfo& info);
 constexpr std::size_t kWaveLanes = 16;
 
 /// Bytes of a device's buffers, as they come and go.
@@ -47,12 +55,13 @@ struct BufferBytes {
 class Device {
  public:
   /// @param index as printed by `mica devices`. Throws DeviceError when there is none.
-  explicit Device(int index);
+  /// @param form of waves; default: what suits the device
+  explicit Device(int index, std::optional<WaveForm> form = {});
 
   const DeviceInfo& info() const { return info_; }
   const cl::Context& context() const { return context_; }
   const cl::CommandQueue& queue() const { return queue_; }
-  WaveForm wave_form() const { return info_.is_cpu ? WaveForm::vectors : WaveForm::items; }
+  WaveForm wave_form() const { return wave_form_; }
 
   /// A kernel of kernels/<file>, compiled with `options` ("-DMICA_INTERPOLATION=1"). Throws DeviceError with
   /// the compiler's log. The wave form is added to the options.
@@ -90,6 +99,7 @@ class Device {
 
   cl::Device device_;
   DeviceInfo info_;
+  WaveForm wave_form_;
   cl::Context context_;
   cl::CommandQueue queue_;
   std::shared_ptr<BufferBytes> bytes_ = std::make_shared<BufferBytes>();  // shared with the buffers

@@ -168,11 +168,11 @@ static inline float lobe_area(slope_lobe lobe, float o_x, float o_y, float o_z) 
 
 // D, I(view), I(light) and the light's projected area of every query, in the order of their slots. Global
 // size: queries (vectors), or 16 a query (items).
-kernel void beckmann_patches(global const mica_patch_query* restrict queries, int query_count,
-                             mica_map_grid grid, global const short* restrict lobes,
-                             global const short* restrict block_nodes,
-                             global const short* restrict tile_nodes, global const short* restrict pyramid,
-                             global float* restrict answers) {
+WAVE_KERNEL void beckmann_patches(global const mica_patch_query* restrict queries, int query_count,
+                                  mica_map_grid grid, global const short* restrict lobes,
+                                  global const short* restrict block_nodes,
+                                  global const short* restrict tile_nodes,
+                                  global const short* restrict pyramid, global float* restrict answers) {
   WAVE_DECLARE_SCRATCH(scratch);
   if (WAVE_ITEM_INDEX >= query_count) return;
   global const mica_patch_query* query = queries + WAVE_ITEM_INDEX;

@@ -21,9 +21,10 @@
 #include "map/walk_leaves.h"
 
 // Density of every query, in the order of their slots. Global size: queries (vectors), or 16 a query (items).
-kernel void beckmanns(global const mica_lobe_query* restrict queries, int query_count, mica_map_grid grid,
-                      global const short* restrict lobes, global const short* restrict block_nodes,
-                      global const short* restrict tile_nodes, global float* restrict density) {
+WAVE_KERNEL void beckmanns(global const mica_lobe_query* restrict queries, int query_count,
+                           mica_map_grid grid, global const short* restrict lobes,
+                           global const short* restrict block_nodes, global const short* restrict tile_nodes,
+                           global float* restrict density) {
   WAVE_DECLARE_SCRATCH(scratch);
   if (WAVE_ITEM_INDEX >= query_count) return;
   global const mica_lobe_query* query = queries + WAVE_ITEM_INDEX;

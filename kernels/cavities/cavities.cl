@@ -76,9 +76,9 @@ static inline void take_cavities(global const mica_map_query* query, global cons
 
 // f_1(o, i) max(i.g, 0) of every query, in the order of their slots. Global size: queries (vectors), or 16 a
 // query (items).
-kernel void cavities(global const mica_map_query* restrict queries, int query_count, mica_map_grid grid,
-                     global const int* restrict normals, global const short* restrict block_nodes,
-                     global const short* restrict tile_nodes, global float* restrict density) {
+WAVE_KERNEL void cavities(global const mica_map_query* restrict queries, int query_count, mica_map_grid grid,
+                          global const int* restrict normals, global const short* restrict block_nodes,
+                          global const short* restrict tile_nodes, global float* restrict density) {
   WAVE_DECLARE_SCRATCH(scratch);
   if (WAVE_ITEM_INDEX >= query_count) return;
   global const mica_map_query* query = queries + WAVE_ITEM_INDEX;

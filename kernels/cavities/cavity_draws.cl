@@ -78,9 +78,9 @@ static inline float3 draw_compensation(global const mica_cavity_query* query) {
 }
 
 // (x, y, z) of every query's light, in the order of their slots.
-kernel void cavity_draws(global const mica_cavity_query* restrict queries, int query_count,
-                         mica_map_grid grid, global const int* restrict normals,
-                         global float* restrict directions) {
+WAVE_KERNEL void cavity_draws(global const mica_cavity_query* restrict queries, int query_count,
+                              mica_map_grid grid, global const int* restrict normals,
+                              global float* restrict directions) {
   if (WAVE_ITEM_INDEX >= query_count) return;
 #if MICA_WAVE_ITEMS
   if (WAVE_LANE != 0) return;

@@ -51,10 +51,10 @@ static inline void take_energies(global const mica_cavity_query* query, global c
 #include "map/walk_leaves.h"
 
 // E_1 of every query, in the order of their slots. Global size: queries (vectors), or 16 a query (items).
-kernel void cavity_energies(global const mica_cavity_query* restrict queries, int query_count,
-                            mica_map_grid grid, global const int* restrict normals,
-                            global const short* restrict block_nodes, global const short* restrict tile_nodes,
-                            global float* restrict energy) {
+WAVE_KERNEL void cavity_energies(global const mica_cavity_query* restrict queries, int query_count,
+                                 mica_map_grid grid, global const int* restrict normals,
+                                 global const short* restrict block_nodes,
+                                 global const short* restrict tile_nodes, global float* restrict energy) {
   WAVE_DECLARE_SCRATCH(scratch);
   if (WAVE_ITEM_INDEX >= query_count) return;
   global const mica_cavity_query* query = queries + WAVE_ITEM_INDEX;

@@ -220,9 +220,9 @@ static inline void take_elements(global const mixture_query* query, global const
 #include "map/walk_leaves.h"
 
 // Density of every query, in the order of their slots. Global size: queries (vectors), or 16 a query (items).
-kernel void gaussians(global const mixture_query* restrict queries, int query_count, mica_map_grid grid,
-                      global const int* restrict normals, global const short* restrict block_nodes,
-                      global const short* restrict tile_nodes, global float* restrict density) {
+WAVE_KERNEL void gaussians(global const mixture_query* restrict queries, int query_count, mica_map_grid grid,
+                           global const int* restrict normals, global const short* restrict block_nodes,
+                           global const short* restrict tile_nodes, global float* restrict density) {
   WAVE_DECLARE_SCRATCH(scratch);
   if (WAVE_ITEM_INDEX >= query_count) return;
   global const mixture_query* query = queries + WAVE_ITEM_INDEX;

@@ -8,7 +8,7 @@
 
 // Densities over the disk of half vectors, MICA_GLINT_COLORS rows of `pitch`. Global size: a lane for each
 // query of the padded batch.
-kernel void grid(global const int* restrict fields, int pitch, global float* restrict density) {
+WAVE_KERNEL void grid(global const int* restrict fields, int pitch, global float* restrict density) {
   const int first = WAVE_LANES * WAVE_ITEM_INDEX;
   const glint_disk_point direction =
       glint_to_disk(GLINT_FLOAT(MICA_GLINT_HALF_S), GLINT_FLOAT(MICA_GLINT_HALF_T),
@@ -32,8 +32,8 @@ kernel void grid(global const int* restrict fields, int pitch, global float* res
 }
 
 // T and T^-1 for points given as pairs of rows of `pitch`, for tests. Out: x, y, D, or s, t.
-kernel void grid_to_disk(global const float* restrict half_vectors, int pitch, float alpha_x, float alpha_y,
-                         global float* restrict points) {
+WAVE_KERNEL void grid_to_disk(global const float* restrict half_vectors, int pitch, float alpha_x,
+                              float alpha_y, global float* restrict points) {
   const int first = WAVE_LANES * WAVE_ITEM_INDEX;
   const wave_float inverse_x = 1.0f / alpha_x, inverse_y = 1.0f / alpha_y;
   const glint_disk_point point =
@@ -44,8 +44,8 @@ kernel void grid_to_disk(global const float* restrict half_vectors, int pitch, f
   wave_store_float(point.density, points + 2 * pitch + first);
 }
 
-kernel void grid_from_disk(global const float* restrict points, int pitch, float alpha_x, float alpha_y,
-                           global float* restrict half_vectors) {
+WAVE_KERNEL void grid_from_disk(global const float* restrict points, int pitch, float alpha_x, float alpha_y,
+                                global float* restrict half_vectors) {
   const int first = WAVE_LANES * WAVE_ITEM_INDEX;
   wave_float s, t;
   glint_from_disk(wave_load_float(points + first), wave_load_float(points + pitch + first), alpha_x, alpha_y,

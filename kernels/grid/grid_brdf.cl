@@ -27,7 +27,8 @@ static inline glint_lobe_shape load_shape(global const int* fields, int pitch, i
 }
 
 // Density of `grid_draw` at half vectors, over the disk (s, t).
-kernel void grid_draw_density(global const int* restrict fields, int pitch, global float* restrict density) {
+WAVE_KERNEL void grid_draw_density(global const int* restrict fields, int pitch,
+                                   global float* restrict density) {
   const int first = WAVE_LANES * WAVE_ITEM_INDEX;
   const glint_disk_point direction =
       glint_to_disk(GLINT_FLOAT(MICA_GLINT_HALF_S), GLINT_FLOAT(MICA_GLINT_HALF_T),
@@ -108,7 +109,8 @@ static inline region_glint draw_glint(private const glint_level* g, glint_lobe_s
 
 // Draws half vectors (s, t), two rows of `pitch`. Fields as of a query, with the key of the draw's random
 // numbers where a query has its half vector. A draw that leaves the disk is (2, 2).
-kernel void grid_draw(global const int* restrict fields, int pitch, global float* restrict half_vectors) {
+WAVE_KERNEL void grid_draw(global const int* restrict fields, int pitch,
+                           global float* restrict half_vectors) {
   const int first = WAVE_LANES * WAVE_ITEM_INDEX;
   const wave_uint key_low = wave_to_uint(GLINT_INT(MICA_GLINT_HALF_S)),
                   key_high = wave_to_uint(GLINT_INT(MICA_GLINT_HALF_T));

@@ -16,10 +16,11 @@ static inline void take_record(global const mica_pyramid_query* query, global co
 #include "pyramid/walk_records.h"
 
 // Images of the queries' footprints. Global size: bands of all images (vectors), or 16 a band (items).
-kernel void pyramid_images(global const mica_pyramid_query* restrict queries, int band_count,
-                           mica_image_window window, mica_map_grid level, global const int* restrict groups,
-                           global const short* restrict top_nodes, global const short* restrict nodes,
-                           global const short* restrict records, global float* restrict images) {
+WAVE_KERNEL void pyramid_images(global const mica_pyramid_query* restrict queries, int band_count,
+                                mica_image_window window, mica_map_grid level,
+                                global const int* restrict groups, global const short* restrict top_nodes,
+                                global const short* restrict nodes, global const short* restrict records,
+                                global float* restrict images) {
   WAVE_DECLARE_SCRATCH(scratch);
   WAVE_SHARED float lobe_records[SPLAT_RECORDS];
   if (WAVE_ITEM_INDEX >= band_count) return;

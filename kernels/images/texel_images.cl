@@ -133,10 +133,10 @@ typedef struct {
 #include "map/walk_leaves.h"
 
 // Images of the queries' footprints. Global size: bands of all images (vectors), or 16 a band (items).
-kernel void texel_images(global const mica_pyramid_query* restrict queries, int band_count,
-                         mica_image_window window, mica_map_grid grid, global const int* restrict normals,
-                         global const short* restrict block_nodes, global const short* restrict tile_nodes,
-                         global float* restrict images) {
+WAVE_KERNEL void texel_images(global const mica_pyramid_query* restrict queries, int band_count,
+                              mica_image_window window, mica_map_grid grid,
+                              global const int* restrict normals, global const short* restrict block_nodes,
+                              global const short* restrict tile_nodes, global float* restrict images) {
   WAVE_DECLARE_SCRATCH(scratch);
   WAVE_SHARED float lobe_records[SPLAT_RECORDS];
   if (WAVE_ITEM_INDEX >= band_count) return;

@@ -4,12 +4,12 @@
 #include "wave/gaussian.h"
 #include "wave/wave.h"
 
-#define FUNCTION(name, value)                                                          \
-  kernel void name(global const float* restrict xs, global const float* restrict ys,   \
-                   global float* restrict z) {                                         \
-    const int first = WAVE_LANES * WAVE_ITEM_INDEX;                                    \
-    const wave_float x = wave_load_float(xs + first), y = wave_load_float(ys + first); \
-    wave_store_float(value, z + first);                                                \
+#define FUNCTION(name, value)                                                             \
+  WAVE_KERNEL void name(global const float* restrict xs, global const float* restrict ys, \
+                        global float* restrict z) {                                       \
+    const int first = WAVE_LANES * WAVE_ITEM_INDEX;                                       \
+    const wave_float x = wave_load_float(xs + first), y = wave_load_float(ys + first);    \
+    wave_store_float(value, z + first);                                                   \
   }
 
 // Each is a kernel of sixteen values a wave; y counts only where the function has two arguments.

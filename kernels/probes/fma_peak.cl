@@ -6,7 +6,7 @@
 #define CHAINS 12  // independent, to cover the latency of a multiply-add
 
 // Each lane runs CHAINS * 2 * rounds floating-point operations. Global size as for any wave kernel.
-kernel void fma_peak(int rounds, float factor, global float* restrict result) {
+WAVE_KERNEL void fma_peak(int rounds, float factor, global float* restrict result) {
   WAVE_DECLARE_SCRATCH(scratch);
   wave_float x[CHAINS];
   for (int k = 0; k < CHAINS; ++k) x[k] = wave_to_float(WAVE_LANE + k);

@@ -4,8 +4,8 @@
 
 // Number `dimension` of keys first_low + n with the upper half `key_high`, twice: alone, and as a lane of a
 // wave. Global size as for any wave kernel, sixteen keys a wave.
-kernel void random_numbers(uint first_low, uint key_high, uint dimension, global float* restrict alone,
-                           global float* restrict in_a_wave) {
+WAVE_KERNEL void random_numbers(uint first_low, uint key_high, uint dimension, global float* restrict alone,
+                                global float* restrict in_a_wave) {
   const int first = WAVE_LANES * WAVE_ITEM_INDEX;
   const wave_uint keys = first_low + (uint)first + wave_to_uint(WAVE_LANE);
   const wave_uint high = key_high, dimensions = dimension;

@@ -31,10 +31,10 @@ kernel void selftest_layout(global int* restrict layout) {
 #endif
 
 // y = f(x), a wave for each sixteen values. Global size as for any wave kernel.
-kernel void selftest_gaussian_exp2(global const float* restrict x, global float* restrict y) {
+WAVE_KERNEL void selftest_gaussian_exp2(global const float* restrict x, global float* restrict y) {
   STORE(gaussian_exp2(LOAD(x + WAVE_LANES * WAVE_ITEM_INDEX)), y + WAVE_LANES * WAVE_ITEM_INDEX);
 }
 
-kernel void selftest_gaussian_cdf_centred(global const float* restrict x, global float* restrict y) {
+WAVE_KERNEL void selftest_gaussian_cdf_centred(global const float* restrict x, global float* restrict y) {
   STORE(gaussian_cdf_centred(LOAD(x + WAVE_LANES * WAVE_ITEM_INDEX)), y + WAVE_LANES * WAVE_ITEM_INDEX);
 }

@@ -35,10 +35,10 @@ static inline void take_record(global const pyramid_query* query, global const s
 #include "pyramid/walk_records.h"
 
 // Density of every query, in the order of their slots. Global size: queries (vectors), or 16 a query (items).
-kernel void pyramid(global const pyramid_query* restrict queries, int query_count, mica_map_grid level,
-                    global const int* restrict groups, global const short* restrict top_nodes,
-                    global const short* restrict nodes, global const short* restrict records,
-                    global float* restrict density) {
+WAVE_KERNEL void pyramid(global const pyramid_query* restrict queries, int query_count, mica_map_grid level,
+                         global const int* restrict groups, global const short* restrict top_nodes,
+                         global const short* restrict nodes, global const short* restrict records,
+                         global float* restrict density) {
   WAVE_DECLARE_SCRATCH(scratch);
   if (WAVE_ITEM_INDEX >= query_count) return;
   global const pyramid_query* query = queries + WAVE_ITEM_INDEX;

@@ -18,8 +18,8 @@ typedef mica_smooth_query smooth_query;
 
 // Density of every query, in the order of their slots. Global size: queries (vectors), or 16 a query (items).
 // The grid is that of the finest level.
-kernel void smooth(global const smooth_query* restrict queries, int query_count, mica_map_grid grid,
-                   global const short* restrict pyramid, global float* restrict density) {
+WAVE_KERNEL void smooth(global const smooth_query* restrict queries, int query_count, mica_map_grid grid,
+                        global const short* restrict pyramid, global float* restrict density) {
   WAVE_DECLARE_SCRATCH(scratch);
   (void)grid;
   if (WAVE_ITEM_INDEX >= query_count) return;

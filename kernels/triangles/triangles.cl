@@ -183,9 +183,9 @@ typedef struct {
 #include "map/walk_leaves.h"
 
 // Density of every query, in the order of their slots. Global size: queries (vectors), or 16 a query (items).
-kernel void triangles(global const triangle_query* restrict queries, int query_count, mica_map_grid grid,
-                      global const int* restrict normals, global const short* restrict block_nodes,
-                      global const short* restrict tile_nodes, global float* restrict density) {
+WAVE_KERNEL void triangles(global const triangle_query* restrict queries, int query_count, mica_map_grid grid,
+                           global const int* restrict normals, global const short* restrict block_nodes,
+                           global const short* restrict tile_nodes, global float* restrict density) {
   WAVE_DECLARE_SCRATCH(scratch);
   WAVE_SHARED float short_records[RIGHT_RECORDS], long_records[RIGHT_RECORDS];
   WAVE_SHARED float thin_records[QUAD_FIELDS * WAVE_LIST], other_records[QUAD_FIELDS * WAVE_LIST];

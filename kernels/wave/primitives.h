@@ -19,6 +19,16 @@
 #endif
 #endif
 
+// Intel's runtime compiles for no processor, and chooses its instructions later: shuffles, rough roots and
+// rough reciprocals are one each.
+#ifndef MICA_NATIVE
+#ifdef __INTEL_LLVM_COMPILER
+#define MICA_NATIVE 1
+#else
+#define MICA_NATIVE 0
+#endif
+#endif
+
 static inline uint wave_ballot(wave_int mask, private int* scratch) {
   (void)scratch;
 #if MICA_AVX512
@@ -45,6 +55,9 @@ static inline wave_float wave_rsqrt(wave_float x) {
   const float8 low = __builtin_ia32_rsqrtps256(x.lo), high = __builtin_ia32_rsqrtps256(x.hi);
   const wave_float y = (wave_float)(low, high);
   return y * fma(-0.5f * x * y, y, 1.5f);
+#elif MICA_NATIVE
+  const wave_float y = native_rsqrt(x);
+  return y * fma(-0.5f * x * y, y, 1.5f);
 #else
   return rsqrt(x);
 #endif
@@ -68,18 +81,40 @@ static inline wave_float wave_reciprocal(wave_float x) {
   const float8 low = __builtin_ia32_rcpps256(x.lo), high = __builtin_ia32_rcpps256(x.hi);
   const wave_float y = (wave_float)(low, high);
   return y * fma(-x, y, 2.0f);
+#elif MICA_NATIVE
+  const wave_float y = native_recip(x);
+  return y * fma(-x, y, 2.0f);
 #else
   return 1.0f / x;
 #endif
 }
 
-#if MICA_AVX2 && !MICA_AVX512
+#if !MICA_AVX512 && (MICA_AVX2 || MICA_NATIVE)
 typedef float8 wave_half_float_anywhere __attribute__((aligned(4)));
+
+// The lanes in four bits, a byte each, in their order.
+constant uint wave_packed_quarters[16] = {0x0, 0x0,   0x1,   0x100,   0x2,   0x200,   0x201,   0x20100,
+                                          0x3, 0x300, 0x301, 0x30100, 0x302, 0x30200, 0x30201, 0x3020100};
+
+// The lanes in eight bits, a byte each: in their order, then any.
+static inline ulong wave_packed_lanes(uint bits) {
+#if MICA_AVX2
+  const ulong chosen = 0xfful * __builtin_ia32_pdep_di(bits, 0x0101010101010101ul);
+  return __builtin_ia32_pext_di(0x0706050403020100ul, chosen);
+#else
+  const ulong low = wave_packed_quarters[bits & 15u], high = wave_packed_quarters[bits >> 4] + 0x4040404u;
+  return low | high << 8 * popcount(bits & 15u);
+#endif
+}
+
 // The lanes in `bits` first, in their order.
 static inline float8 wave_packed_half(float8 value, uint bits) {
-  const ulong lanes = 0xfful * __builtin_ia32_pdep_di(bits, 0x0101010101010101ul);
-  const ulong chosen = __builtin_ia32_pext_di(0x0706050403020100ul, lanes);
-  return __builtin_ia32_permvarsf256(value, convert_int8(as_uchar8(chosen)));
+  const int8 lanes = convert_int8(as_uchar8(wave_packed_lanes(bits)));
+#if MICA_AVX2
+  return __builtin_ia32_permvarsf256(value, lanes);
+#else
+  return shuffle(value, as_uint8(lanes));
+#endif
 }
 #endif
 
@@ -88,7 +123,7 @@ static inline float8 wave_packed_half(float8 value, uint bits) {
 static inline void wave_pack(private float* list, uint bits, wave_float value) {
 #if MICA_AVX512
   *(private wave_float_anywhere*)list = __builtin_ia32_compresssf512_mask(value, value, (ushort)bits);
-#elif MICA_AVX2
+#elif MICA_AVX2 || MICA_NATIVE
   *(private wave_half_float_anywhere*)list = wave_packed_half(value.lo, bits & 0xffu);
   list += popcount(bits & 0xffu);
   *(private wave_half_float_anywhere*)list = wave_packed_half(value.hi, bits >> 8);
