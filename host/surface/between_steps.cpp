@@ -13,11 +13,13 @@ namespace {
 using Complex = std::complex<float>;
 using Gains = LocalFilter::Gains;
 
-constexpr int kSmoothIterations = 60;
+constexpr int kSmoothIterations = 160;
 constexpr float kRounding = 1.0f / 12;
 constexpr float kLeastPower = 1e-5f;
 /// Powers of rounding are guesses from few windows: what is little more than they are may be rounding, too.
 constexpr float kOverSubtraction = 2;
+/// Numbers smaller than a step are rounded to larger ones: the smoothest tell their size.
+constexpr float kMostOfSmooth = 2;
 /// Standard deviation of texels about their field, in steps. The smaller, the truer, and the slower draws
 /// move.
 constexpr double kNugget = 0.1;
@@ -94,10 +96,12 @@ struct Prior {
 
   Prior(const LocalFilter& filter, const PairGrid& rounded, const PairGrid& smooth)
       : rough(static_cast<std::size_t>(filter.windows())) {
-    const Gains powers = filter.powers(rounded), of_rounding = rounding_powers(filter, smooth);
+    const Gains powers = filter.powers(rounded), of_rounding = rounding_powers(filter, smooth),
+                of_smooth = filter.powers(smooth);
     constexpr auto nugget = static_cast<float>(kNugget * kNugget);
     const auto power = [&](std::size_t n, int axis) {
-      return std::max(powers[n][axis] - kOverSubtraction * of_rounding[n][axis], kLeastPower);
+      const float left = powers[n][axis] - kOverSubtraction * of_rounding[n][axis];
+      return std::max(std::min(left, kMostOfSmooth * of_smooth[n][axis]), kLeastPower);
     };
     field = gains_of(filter, [&](std::size_t n, std::size_t, std::size_t frequency, int axis) {
       return frequency == 0 ? 1 : power(n, axis) / (power(n, axis) + nugget);

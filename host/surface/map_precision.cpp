@@ -20,7 +20,7 @@ namespace {
 constexpr double kSigmaTexels = 24, kFootprintReach = 2.5;  // of footprints; standard deviations
 constexpr int kMargin = 35;                                 // of a tile, whose edges are no neighbours
 constexpr std::size_t kTiles = 3;
-constexpr int kDrawsOfError = 3, kDrawsOfMean = 12;
+constexpr int kDrawsOfError = 3, kDrawsOfMean = 10;
 constexpr int kRestored = 256, kRestoredMargin = 64;  // texels a side that are restored at a time
 
 /// A square of the surface, in steps.
