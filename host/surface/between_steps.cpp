@@ -18,8 +18,6 @@ constexpr float kRounding = 1.0f / 12;
 constexpr float kLeastPower = 1e-5f;
 /// Powers of rounding are guesses from few windows: what is little more than they are may be rounding, too.
 constexpr float kOverSubtraction = 2;
-/// Numbers smaller than a step are rounded to larger ones: the smoothest tell their size.
-constexpr float kMostOfSmooth = 2;
 /// Standard deviation of texels about their field, in steps. The smaller, the truer, and the slower draws
 /// move.
 constexpr double kNugget = 0.1;
@@ -96,12 +94,10 @@ struct Prior {
 
   Prior(const LocalFilter& filter, const PairGrid& rounded, const PairGrid& smooth)
       : rough(static_cast<std::size_t>(filter.windows())) {
-    const Gains powers = filter.powers(rounded), of_rounding = rounding_powers(filter, smooth),
-                of_smooth = filter.powers(smooth);
+    const Gains powers = filter.powers(rounded), of_rounding = rounding_powers(filter, smooth);
     constexpr auto nugget = static_cast<float>(kNugget * kNugget);
     const auto power = [&](std::size_t n, int axis) {
-      const float left = powers[n][axis] - kOverSubtraction * of_rounding[n][axis];
-      return std::max(std::min(left, kMostOfSmooth * of_smooth[n][axis]), kLeastPower);
+      return std::max(powers[n][axis] - kOverSubtraction * of_rounding[n][axis], kLeastPower);
     };
     field = gains_of(filter, [&](std::size_t n, std::size_t, std::size_t frequency, int axis) {
       return frequency == 0 ? 1 : power(n, axis) / (power(n, axis) + nugget);
@@ -145,7 +141,7 @@ BetweenSteps between_steps(int side, const PairGrid& rounded, int draws, std::ui
   PairGrid sum(rounded.size());
   const int unused = draws / 3;
   for (int iteration = 0; iteration < unused + draws; ++iteration) {
-    const auto stream = static_cast<std::uint64_t>(2 * iteration);
+    const std::uint64_t stream = 2 * static_cast<std::uint64_t>(iteration);
     const PairGrid field = sum_of(filter.filtered(found.draw, prior.field),
                                   filter.filtered(white_noise(rounded.size(), seed, stream), prior.spread));
     for (std::size_t n = 0; n < field.size(); ++n) {
