@@ -195,7 +195,7 @@ class Decoder {
     const double length = n.norm();
     if (length < kShortestNormal) return invalid(texel);
     if (std::abs(length - 1) > length_tolerance()) unnormalised_.add(texel);
-    n /= length;
+    if (!keeps_rounded(length)) n /= length;
     return n.z() > 0 ? on_disk(texel, n.head<2>()) : on_rim(texel, n.head<2>());
   }
 
@@ -216,6 +216,13 @@ class Decoder {
     const auto at = [&](std::size_t x, std::size_t y) { return heights[y % height * width + x % width]; };
     return on_disk(texel, disk_from_slope({(at(i + 1, j) - at(i + width - 1, j)) / 2,  //
                                            (at(i, j + 1) - at(i, j + height - 1)) / 2}));
+  }
+
+  /// What is restored is known within half a step as it is in the file; scaling would add the third
+  /// coordinate's rounding.
+  bool keeps_rounded(double length) const {
+    return file_.precision == Precision::restore &&
+           std::abs(length - 1) <= std::sqrt(0.75) * slope_step(file_, encoding_, pixels_);
   }
 
   double length_tolerance() const {
@@ -306,7 +313,8 @@ Surface load_map(const MapFile& file, Interpolation interpolation, SurfaceReport
   }
   Surface surface(pixels.width, pixels.height, interpolation, std::move(normals));
   // Of what is left after that no number is known.
-  if (!restores) surface.note_steps({step, file.precision == Precision::widen});
+  const bool scaled = pixels.channels.size() == 3;
+  if (!restores) surface.note_steps({step, file.precision == Precision::widen, scaled});
   return surface;
 }
 

@@ -7,88 +7,83 @@
 #include <array>
 #include <cmath>
 
+#include "host/base/interrupt.h"
 #include "host/base/random.h"
+#include "host/surface/between_steps.h"
 #include "host/surface/disk.h"
-#include "host/surface/restore_steps.h"
+#include "host/surface/facets.h"
+#include "host/surface/features.h"
 
 namespace mica::host {
 namespace {
 
-constexpr int kIterations = 200, kTileIterations = 80;
-constexpr double kSigmaTexels = 24, kFootprintReach = 3;  // of footprints; standard deviations
-constexpr int kMargin = 32;                               // of a tile, whose edges are no neighbours
-constexpr int kFlatTexels = 400;                          // of a facet that is wider than plateaus of a slope
-constexpr std::size_t kTiles = 4;
-constexpr float kHalfStep = 0.51f;  // of one that scaling to length 1 moved, too
+constexpr double kSigmaTexels = 24, kFootprintReach = 2.5;  // of footprints; standard deviations
+constexpr int kMargin = 35;                                 // of a tile, whose edges are no neighbours
+constexpr std::size_t kTiles = 3;
+constexpr int kDrawsOfError = 3, kDrawsOfMean = 10;
+constexpr int kRestored = 256, kRestoredMargin = 64;  // texels a side that are restored at a time
 
-/// A square of the surface, in steps; one grid a coordinate.
+/// A square of the surface, in steps.
 struct Tile {
   int side = 0;
-  std::array<RoundedGrid, 2> grids;
+  PairGrid normals;
 
-  Tile(const Surface& surface, long first_i, long first_j, int texels) : side(texels) {
-    for (RoundedGrid& grid : grids) grid.width = grid.height = side;
+  /// @param texel (i, j), in steps. @param texels at least a side; there may be more, to the right and above.
+  template <typename Texel>
+  Tile(long first_i, long first_j, int texels, const Texel& texel)
+      : side((texels + LocalFilter::kHop - 1) / LocalFilter::kHop * LocalFilter::kHop) {
     for (int j = 0; j < side; ++j)
       for (int i = 0; i < side; ++i) {
-        const Eigen::Vector2d steps = surface.texel(first_i + i, first_j + j) / surface.step();
-        for (const int axis : {0, 1}) grids[axis].values.push_back(static_cast<float>(steps[axis]));
+        const Eigen::Vector2d steps = texel(first_i + i, first_j + j);
+        normals.emplace_back(static_cast<float>(steps.x()), static_cast<float>(steps.y()));
       }
   }
   Eigen::Vector2f at(int i, int j) const {
-    const std::size_t n = static_cast<std::size_t>(j) * side + i;
-    return {grids[0].values[n], grids[1].values[n]};
+    const std::complex<float>& normal = normals[static_cast<std::size_t>(j) * side + i];
+    return {normal.real(), normal.imag()};
   }
 };
-
-/// Numbers of the facets that texels lie on: neighbours that are equal, up to what scaling to length 1 moves
-/// them by.
-std::vector<int> facets_of(const Tile& tile) {
-  constexpr float same = 0.2f;
-  std::vector<int> facets(static_cast<std::size_t>(tile.side) * tile.side, -1), open;
-  int count = 0;
-  for (int start = 0; start < tile.side * tile.side; ++start) {
-    if (facets[start] >= 0) continue;
-    open.assign(1, start);
-    facets[start] = count;
-    while (!open.empty()) {
-      const int n = open.back(), i = n % tile.side, j = n / tile.side;
-      open.pop_back();
-      for (const auto& [x, y] : {std::pair{i + 1, j}, {i - 1, j}, {i, j + 1}, {i, j - 1}}) {
-        if (x < 0 || y < 0 || x >= tile.side || y >= tile.side) continue;
-        const int m = y * tile.side + x;
-        if (facets[m] >= 0 || (tile.at(i, j) - tile.at(x, y)).cwiseAbs().maxCoeff() > same) continue;
-        facets[m] = count;
-        open.push_back(m);
-      }
-    }
-    ++count;
-  }
-  return facets;
-}
 
 /// Another surface that rounds to the tile.
 Tile another(const Tile& tile, std::uint64_t seed) {
   Tile other = tile;
-  const std::vector<int> facets = facets_of(tile);
-  std::vector<int> texels_of(facets.size());
-  for (const int facet : facets) ++texels_of[facet];
-  const SmoothShares shares = smooth_shares(tile.grids[0], tile.grids[1], 1);
-  restore_steps(kTileIterations, &other.grids[0], &other.grids[1]);
-  for (const int axis : {0, 1}) {
-    for (std::size_t n = 0; n < facets.size(); ++n) {
-      const float rounded = tile.grids[axis].values[n];
-      // Nothing tells where between the steps a wide facet lies, but that what may be flat is.
-      const bool is_wide = texels_of[facets[n]] >= kFlatTexels;
-      const float smooth =
-          is_wide ? 0.0f : std::max({shares[0][n], shares[1][n], shares[2][n], shares[3][n]});
-      const double within = random_unit(seed, static_cast<std::uint64_t>(axis), facets[n]) - 0.5;
-      const bool is_flat = is_wide && std::abs(rounded) <= kHalfStep;
-      const float apart = is_flat ? 0.0f : rounded + static_cast<float>(within);
-      float& value = other.grids[axis].values[n];
-      value = smooth * value + (1 - smooth) * apart;
-    }
+  other.normals = between_steps(tile.side, tile.normals, kDrawsOfError, seed).draw;
+  const Facets facets = find_facets(tile.side, tile.normals);
+  for (std::size_t n = 0; n < facets.of_texel.size(); ++n) {
+    const int facet = facets.of_texel[n];
+    const auto within = [&](std::uint64_t axis) {
+      return static_cast<float>(random_unit(seed + kTiles, axis, facet) - 0.5);
+    };
+    if (facets.is_plane[facet])
+      other.normals[n] = 0;
+    else if (facets.is_cut_out[facet])
+      other.normals[n] = tile.normals[n] + std::complex<float>(within(0), within(1));
   }
   return other;
+}
+
+/// The third coordinate's rounding is in a normal's length, which it was divided by: a change from plateau to
+/// plateau, that no sum over texels evens out.
+void undo_scaling(double step, Tile* tile) {
+  for (std::complex<float>& normal : tile->normals) {
+    const double square = step * step * std::norm(normal), z = std::sqrt(std::max(1 - square, 0.0)),
+                 rounded_z = std::round((z + 1) / step) * step - 1;
+    normal *= static_cast<float>(std::sqrt(square + rounded_z * rounded_z));
+  }
+}
+
+/// The best guess of a tile's normals.
+PairGrid restored(const Tile& tile, std::uint64_t seed) {
+  PairGrid normals = between_steps(tile.side, tile.normals, kDrawsOfMean, seed).mean;
+  const Facets facets = find_facets(tile.side, tile.normals);
+  for (std::size_t n = 0; n < normals.size(); ++n) {
+    const int facet = facets.of_texel[n];
+    if (facets.is_plane[facet])
+      normals[n] = 0;
+    else if (facets.is_cut_out[facet])
+      normals[n] = tile.normals[n];
+  }
+  return normals;
 }
 
 /// A P-NDF as a picture over the normals under a footprint, blurred by the roughness.
@@ -176,17 +171,29 @@ void add_footprint(const Tile& tile, Interpolation interpolation, double sigma, 
 }  // namespace
 
 void restore_normals(int width, int height, double step, std::vector<Eigen::Vector2d>* normals) {
-  std::array<RoundedGrid, 2> grids;
-  for (const int axis : {0, 1}) {
-    grids[axis] = {width, height, std::vector<float>(normals->size())};
-    for (std::size_t n = 0; n < normals->size(); ++n)
-      grids[axis].values[n] = static_cast<float>((*normals)[n][axis] / step);
-  }
-  restore_steps(kIterations, &grids[0], &grids[1]);
-  for (const int axis : {0, 1})
-    for (std::size_t n = 0; n < normals->size(); ++n) (*normals)[n][axis] = step * grids[axis].values[n];
-  for (Eigen::Vector2d& normal : *normals)
-    if (normal.norm() > kRim) normal *= kRim / normal.norm();
+  const std::vector<Eigen::Vector2d> rounded = *normals;
+  const auto texel = [&](long i, long j) -> Eigen::Vector2d {
+    return rounded[static_cast<std::size_t>(synthesis::wrapped(j, height)) * width +
+                   synthesis::wrapped(i, width)] /
+           step;
+  };
+  const int columns = (width + kRestored - 1) / kRestored, rows = (height + kRestored - 1) / kRestored;
+  tbb::parallel_for(0, columns * rows, [&](int n) {
+    const int first_i = n % columns * kRestored, first_j = n / columns * kRestored;
+    const int most_i = std::min(kRestored, width - first_i), most_j = std::min(kRestored, height - first_j);
+    check_interrupt();
+    const Tile tile(first_i - kRestoredMargin, first_j - kRestoredMargin,
+                    std::max(most_i, most_j) + 2 * kRestoredMargin, texel);
+    const PairGrid found = restored(tile, n);
+    for (int j = 0; j < most_j; ++j)
+      for (int i = 0; i < most_i; ++i) {
+        const std::complex<float>& steps =
+            found[static_cast<std::size_t>(j + kRestoredMargin) * tile.side + i + kRestoredMargin];
+        Eigen::Vector2d& normal = (*normals)[static_cast<std::size_t>(first_j + j) * width + first_i + i];
+        normal = step * Eigen::Vector2d(steps.real(), steps.imag());
+        if (normal.norm() > kRim) normal *= kRim / normal.norm();
+      }
+  });
 }
 
 double precision_error(const Surface& surface, double roughness) {
@@ -199,12 +206,14 @@ double precision_error(const Surface& surface, double roughness) {
     const auto place = [&](std::uint64_t stream, int size) {
       return static_cast<long>(random_unit(13, stream, n) * size);
     };
-    const Tile tile(surface, place(0, surface.width()), place(1, surface.height()), side);
-    const Tile other = another(tile, n);
+    const Tile tile(place(0, surface.width()), place(1, surface.height()), side,
+                    [&](long i, long j) -> Eigen::Vector2d { return surface.texel(i, j) / surface.step(); });
+    Tile other = another(tile, n);
+    if (surface.scaled()) undo_scaling(surface.step(), &other);
     Eigen::Vector2f low = tile.at(0, 0), high = low;
-    for (int k = 0; k < side * side; ++k) {
-      low = low.cwiseMin(tile.at(k % side, k / side));
-      high = high.cwiseMax(tile.at(k % side, k / side));
+    for (int k = 0; k < tile.side * tile.side; ++k) {
+      low = low.cwiseMin(tile.at(k % tile.side, k / tile.side));
+      high = high.cwiseMax(tile.at(k % tile.side, k / tile.side));
     }
     low.array() -= 1, high.array() += 1;
     std::array<NormalPicture, 2> pictures = {NormalPicture(low, high, roughness_steps),

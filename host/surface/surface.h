@@ -24,9 +24,11 @@ class Surface {
   struct Steps {
     double step = 0;      ///< between neighbouring values of s; 0: too fine to matter
     bool widens = false;  ///< lobes are wider by the variance of rounding
+    bool scaled = false;  ///< from three numbers in such steps to length 1
   };
   void note_steps(const Steps& steps) { steps_ = steps; }
   double step() const { return steps_.step; }
+  bool scaled() const { return steps_.scaled; }
   /// What a lobe's covariance on the disk is wider by, along every axis; see Precision.
   double lobe_variance() const { return steps_.widens ? steps_.step * steps_.step / 12 : 0; }
 

@@ -25,9 +25,17 @@ std::vector<Eigen::Vector2d> rounded(const Surface& surface) {
   return normals;
 }
 
+/// What an 8-bit PNG holds, less the third coordinate.
+std::vector<Eigen::Vector2d> stored(const Surface& surface) {
+  std::vector<Eigen::Vector2d> normals;
+  for (const Eigen::Vector2d& s : surface.normals())
+    normals.emplace_back(((s.array() + 1) / kStep).round() * kStep - 1);
+  return normals;
+}
+
 Surface with_normals(const Surface& surface, std::vector<Eigen::Vector2d> normals) {
   Surface other(surface.width(), surface.height(), surface.interpolation(), std::move(normals));
-  other.note_steps({kStep, false});
+  other.note_steps({kStep, false, true});
   return other;
 }
 
@@ -76,7 +84,7 @@ struct Errors {
 };
 Errors errors_of(const Surface& exact, double roughness) {
   const Surface as_is = with_normals(exact, rounded(exact));
-  std::vector<Eigen::Vector2d> normals = as_is.normals();
+  std::vector<Eigen::Vector2d> normals = stored(exact);
   restore_normals(exact.width(), exact.height(), kStep, &normals);
   const Errors errors{error_of(as_is, exact, roughness), precision_error(as_is, roughness),
                       error_of(with_normals(exact, std::move(normals)), exact, roughness)};
@@ -99,9 +107,20 @@ TEST(Precision, SmoothMapsComeBackFromTheirSteps) {
 /// Brushed metal changes by a step over tens of texels along the brushing.
 TEST(Precision, WidePlateausComeBackInPart) {
   BrushedSurface brushed;
-  brushed.resolution = 256, brushed.seed = 4;
+  brushed.resolution = 512, brushed.seed = 9;
   const Errors errors = errors_of(make_surface({"b", brushed, Interpolation::bilinear}, nullptr), 0.005);
   EXPECT_LE(errors.restored, 0.6 * errors.as_is);
+}
+
+/// Between smooth and rough the smoothest map within the steps is none that was rounded: slopes of few steps,
+/// under a lobe that does not see the steps.
+TEST(Precision, NoMapIsSmoothedBeyondItsOwnSpectrum) {
+  const Surface gentle =
+      make_surface({"s", SpectrumSurface{128, 0.05, 20, 7}, Interpolation::bilinear}, nullptr);
+  for (const Surface& exact : {spectrum(12, 8), gentle}) {
+    const Errors errors = errors_of(exact, 0.01);
+    EXPECT_LE(errors.restored, 0.9 * errors.as_is);
+  }
 }
 
 /// Texels that carry more than their step: what is not known is not made up.
@@ -115,7 +134,11 @@ TEST(Precision, RoughMapsStayAsTheyAre) {
 
 /// Within a factor of 1.5, of which the measure by a few footprints may take another tenth.
 TEST(Precision, TheErrorIsSaidWithoutTheExactMap) {
-  for (const Errors& errors : {errors_of(spectrum(8, 5), 0.005), errors_of(spectrum(40, 6), 0.004)}) {
+  BrushedSurface brushed;
+  brushed.resolution = 256, brushed.seed = 9;
+  const Surface along = make_surface({"b", brushed, Interpolation::bilinear}, nullptr);
+  for (const Errors& errors :
+       {errors_of(spectrum(8, 5), 0.005), errors_of(spectrum(40, 6), 0.004), errors_of(along, 0.005)}) {
     EXPECT_LE(errors.said, 1.65 * errors.as_is);
     EXPECT_GE(errors.said, errors.as_is / 1.65);
   }
@@ -128,6 +151,7 @@ TEST(Precision, APlaneIsOffByHalfAStep) {
   const Errors errors = errors_of(plane, 0.005);
   EXPECT_GT(errors.as_is, 0.5);
   EXPECT_NEAR(errors.said, errors.as_is, 0.1 * errors.as_is);
+  EXPECT_LE(errors.restored, 1e-6);
 }
 
 TEST(Precision, WithoutStepsNothingIsLost) {
