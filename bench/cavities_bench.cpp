@@ -41,7 +41,7 @@ std::vector<Contender> make_contenders(Device& device, const Surface& surface) {
   std::vector<Contender> contenders;
   contenders.push_back(
       {"beckmanns, filtered", make_patch_brdf("beckmanns", device, surface, {{"masking", "filtered"}})});
-  for (const LostEnergy energy : {LostEnergy::table, LostEnergy::exact}) {
+  for (const LostEnergy energy : {LostEnergy::sampled, LostEnergy::exact}) {
     for (const int per_texel : {1, 2}) {
       CavitySettings settings;
       settings.energy = energy, settings.per_texel = per_texel;
