@@ -6,8 +6,8 @@
 #include "cavities/cavity_seeds.h"
 #include "wave/gaussian.h"
 
-// Standard deviations to which seeds count: all but 4e-3 of the weight.
-#define SAMPLE_REACH 3.3f
+// Standard deviations to which seeds count: all but 8e-3 of the weight.
+#define SAMPLE_REACH 3.1f
 
 static inline wave_int load_normals(global const int* normals, wave_int at) {
 #if MICA_WAVE_ITEMS

@@ -20,7 +20,7 @@ double seen_area(const Eigen::Vector3d& direction, const Eigen::Vector3d& half) 
 }
 
 constexpr double kCellsASigma = 12;   // of a lattice of samples
-constexpr double kSampleReach = 3.3;  // as SAMPLE_REACH of kernels/cavities/cavity_samples.cl
+constexpr double kSampleReach = 3.1;  // as SAMPLE_REACH of kernels/cavities/cavity_samples.cl
 
 std::int32_t step_of(double seeds) {
   return static_cast<std::int32_t>(std::max(std::floor(seeds), 1.0));
@@ -102,7 +102,7 @@ device_types::mica_sampled_cavity_query to_sampled_query(const ViewQuery& query,
   const double groups = (2 * kSampleReach * sigma_x / result.step_x + 1) *
                         (2 * kSampleReach * sigma_y / result.step_y + 1) / 16;
   result.blur_step = 1;
-  while (result.blur_step < 8 && 4 * 2 * result.blur_step <= groups) result.blur_step *= 2;
+  while (result.blur_step < 16 && 2 * result.blur_step <= groups) result.blur_step *= 2;
   return result;
 }
 
