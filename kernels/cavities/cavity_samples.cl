@@ -22,15 +22,12 @@ static inline wave_int load_normals(global const int* normals, wave_int at) {
 
 // One component of the seeds whose texels are stored at `at`, between them and their neighbours.
 static inline wave_float load_seeds(global const int* normals, wave_int at, wave_int right, wave_int up) {
-  wave_float sum = wave_to_float(load_normals(normals, at));
-#if MICA_SEEDS > 1 && MICA_INTERPOLATION != 0
-  sum += wave_to_float(load_normals(normals, at + right));
-  sum +=
+  const wave_float own = wave_to_float(load_normals(normals, at));
+  if (MICA_INTERPOLATION == 0 ? 1 : MICA_SEEDS == 1) return (1.0f / MICA_NORMAL_ONE) * own;
+  const wave_float beside = wave_to_float(load_normals(normals, at + right));
+  const wave_float above =
       wave_to_float(load_normals(normals, at + up)) + wave_to_float(load_normals(normals, at + right + up));
-  return (0.25f / MICA_NORMAL_ONE) * sum;
-#else
-  return (1.0f / MICA_NORMAL_ONE) * sum;
-#endif
+  return (0.25f / MICA_NORMAL_ONE) * ((own + beside) + above);
 }
 
 // `index` less whole periods. Half a step keeps the division clear of whole numbers.
