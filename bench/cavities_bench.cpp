@@ -41,7 +41,7 @@ std::vector<Contender> make_contenders(Device& device, const Surface& surface) {
   std::vector<Contender> contenders;
   contenders.push_back(
       {"beckmanns, filtered", make_patch_brdf("beckmanns", device, surface, {{"masking", "filtered"}})});
-  for (const LostEnergy energy : {LostEnergy::table, LostEnergy::exact}) {
+  for (const LostEnergy energy : {LostEnergy::sampled, LostEnergy::exact}) {
     for (const int per_texel : {1, 2}) {
       CavitySettings settings;
       settings.energy = energy, settings.per_texel = per_texel;
@@ -78,7 +78,7 @@ int run(const char* json_path) {
   fmt::print("device {}\n{:>6}  {:<28} {:>8} {:>8} {:>12} {:>21} {:>8}\n", device.info().name, "sigma",
              "BRDF", "MiB", "build s", "queries/s", "(spread)", "cost");
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
-  for (const double sigma : {2.0, 8.0, 32.0}) {
+  for (const double sigma : {0.7, 2.0, 8.0, 32.0}) {
     const std::vector<BrdfQuery> queries =
         with_lights(thinned(coherent_queries(surface, sigma), sigma > 16  ? 16
                                                               : sigma > 4 ? 4

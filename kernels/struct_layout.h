@@ -38,6 +38,18 @@
   OFFSET(mica_cavity_query, key_low)                 \
   OFFSET(mica_cavity_query, key_high)                \
   OFFSET(mica_cavity_query, lobe_sigma)              \
+  SIZE(mica_sampled_cavity_query)                    \
+  OFFSET(mica_sampled_cavity_query, cavity)          \
+  OFFSET(mica_sampled_cavity_query, mean_i)          \
+  OFFSET(mica_sampled_cavity_query, mean_j)          \
+  OFFSET(mica_sampled_cavity_query, mean_x)          \
+  OFFSET(mica_sampled_cavity_query, mean_y)          \
+  OFFSET(mica_sampled_cavity_query, sigma_x)         \
+  OFFSET(mica_sampled_cavity_query, sigma_y)         \
+  OFFSET(mica_sampled_cavity_query, shear)           \
+  OFFSET(mica_sampled_cavity_query, step_x)          \
+  OFFSET(mica_sampled_cavity_query, step_y)          \
+  OFFSET(mica_sampled_cavity_query, blur_step)       \
   SIZE(mica_mixture_query)                           \
   OFFSET(mica_mixture_query, map)                    \
   OFFSET(mica_mixture_query, axis_1x)                \

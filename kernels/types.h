@@ -113,6 +113,19 @@ typedef struct {
   MICA_FLOAT lobe_sigma;       // standard deviation of (i_x, i_y) in the specular compensation
 } mica_cavity_query;
 
+// The same for a choice of the seeds under a footprint: one at a random place of each cell of a lattice,
+// whose rows lean as the footprint does.
+typedef struct {
+  mica_cavity_query cavity;
+  MICA_INT mean_i,
+      mean_j;  // footprint mean, whole seeds, in [0, width) x [0, height) times the seeds a texel
+  MICA_FLOAT mean_x, mean_y;    // and the rest, in [0, 1)
+  MICA_FLOAT sigma_x, sigma_y;  // standard deviations along a row, and of the rows, in seeds
+  MICA_FLOAT shear;             // how far a row's middle lies aside, over its distance from the mean
+  MICA_INT step_x, step_y;      // sides of a cell, in seeds
+  MICA_INT blur_step;  // 1 to 16, a power of two: of the points of the blur a cell has every blur_step-th
+} mica_sampled_cavity_query;
+
 // One query of a Gaussian mixture, in texel units. [Yan16]. With tau_i^2 = sigma_i^2 + k, sigma_i and a_i the
 // footprint's standard deviations and axes, k the variance of the elements' position kernel.
 typedef struct {
@@ -192,6 +205,8 @@ static_assert(sizeof(mica_lobe_query) == 88 && offsetof(mica_lobe_query, slope_x
 static_assert(sizeof(mica_mixture_query) == 96 && offsetof(mica_mixture_query, axis_1x) == 64 &&
               offsetof(mica_mixture_query, kernel_variance) == 92);
 static_assert(sizeof(mica_cavity_query) == 100 && offsetof(mica_cavity_query, lobe_sigma) == 96);
+static_assert(sizeof(mica_sampled_cavity_query) == 140 &&
+              offsetof(mica_sampled_cavity_query, blur_step) == 136);
 static_assert(sizeof(mica_turned_lobe) == 32 && offsetof(mica_turned_lobe, turn_2y) == 28);
 static_assert(sizeof(mica_turned_query) == 96 && offsetof(mica_turned_query, lobe) == 64);
 static_assert(sizeof(mica_turned_mixture_query) == 148 &&

@@ -12,8 +12,8 @@ enum class Compensation {
 
 /// Where the energy comes from that one bounce loses under a footprint.
 enum class LostEnergy {
-  exact,  ///< every seed under the footprint. [Che19] Eq. 15
-  table   ///< Gaussians with the moments of the footprint's slopes. [Che19] Eq. 18
+  exact,   ///< every seed under the footprint. [Che19] Eq. 15
+  sampled  ///< some of them: one in each cell of a lattice
 };
 
 template <>
@@ -24,7 +24,7 @@ struct Words<Compensation> {
 
 template <>
 struct Words<LostEnergy> {
-  static constexpr Word<LostEnergy> all[] = {{"exact", LostEnergy::exact}, {"table", LostEnergy::table}};
+  static constexpr Word<LostEnergy> all[] = {{"exact", LostEnergy::exact}, {"sampled", LostEnergy::sampled}};
 };
 
 }  // namespace mica::host

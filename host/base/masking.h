@@ -11,6 +11,17 @@ enum class Masking {
   geometric  ///< one roughness for the whole map, and cosines to the geometric normal. [Yan14] Eq. 1
 };
 
+/// Whether a patch BRDF may scatter more than it gets where its masking is an approximation.
+enum class EnergyBound {
+  none,
+  patch  ///< every direction sees at least what the lobes under the footprint show it
+};
+
+template <>
+struct Words<EnergyBound> {
+  static constexpr Word<EnergyBound> all[] = {{"none", EnergyBound::none}, {"patch", EnergyBound::patch}};
+};
+
 template <>
 struct Words<Masking> {
   static constexpr Word<Masking> all[] = {

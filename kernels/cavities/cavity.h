@@ -47,19 +47,20 @@ constant float cavity_blur[CAVITY_BLUR_POINTS][2] = {
     {1.0990748f, 0.6840998f},   {1.2544661f, -2.1475120f},  {1.4461648f, -0.4854048f},
     {1.7094724f, 0.2711093f},   {2.1969700f, 1.1898250f}};
 
-// E_1 averaged over facets that the roughness spreads about the normals (s, t).
+// E_1 averaged over facets that the roughness spreads about the normals (s, t): over every step-th point of
+// the blur, a power of two, from `first` on.
 static inline wave_float cavity_blurred_energy(wave_float s, wave_float t, float roughness, float o_x,
-                                               float o_y, float o_z) {
+                                               float o_y, float o_z, int first, int step) {
   const float squared_sine = fma(o_x, o_x, o_y * o_y);
   const float scale = squared_sine > 1e-12f ? roughness * rsqrt(squared_sine) : 0.0f;
   const float along_s = squared_sine > 1e-12f ? scale * o_x : roughness, along_t = scale * o_y;
   wave_float energy = 0.0f;
-  for (int n = 0; n < CAVITY_BLUR_POINTS; ++n) {
+  for (int n = first; n < CAVITY_BLUR_POINTS; n += step) {
     const float along = cavity_blur[n][0], across = cavity_blur[n][1];
     energy += cavity_energy(s + fma(along, along_s, -across * along_t),
                             t + fma(along, along_t, across * along_s), o_x, o_y, o_z);
   }
-  return energy * (1.0f / CAVITY_BLUR_POINTS);
+  return energy * ((float)step / CAVITY_BLUR_POINTS);
 }
 
 #endif  // MICA_CAVITY_H

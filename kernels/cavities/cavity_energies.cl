@@ -32,7 +32,7 @@ static inline void take_energies(global const mica_cavity_query* query, global c
       const wave_float t =
           wave_to_float(seed_normals(normals + at + MICA_BLOCK_PLANE, a, b)) * (1.0f / MICA_NORMAL_ONE);
       const wave_float energy =
-          cavity_blurred_energy(s, t, query->roughness, query->view_x, query->view_y, query->view_z);
+          cavity_blurred_energy(s, t, query->roughness, query->view_x, query->view_y, query->view_z, 0, 1);
       const wave_float q = seed_distances(&query->map, x + a * SEED_SPACING, y + b * SEED_SPACING);
       const wave_float weight =
           wave_select(nothing, gaussian_exp2(max((-EXP2_SCALE * EXP2_SCALE) * q, -126.0f)), inside_map);

@@ -34,7 +34,7 @@ class EvalCavities : public CommandTest {
 };
 
 TEST_F(EvalCavities, PartsAddUp) {
-  for (const std::string options : {"", " --energy table", " --compensation specular", " --elements 2"}) {
+  for (const std::string options : {"", " --energy sampled", " --compensation specular", " --elements 2"}) {
     const std::vector<float> all = answers("pairs.npy --quantity brdf" + options),
                              single = answers("pairs.npy --quantity brdf --part single" + options),
                              multiple = answers("pairs.npy --quantity brdf --part multiple" + options);
@@ -47,7 +47,7 @@ TEST_F(EvalCavities, PartsAddUp) {
 }
 
 TEST_F(EvalCavities, EnergyIsWholeAndWeightsAreOne) {
-  for (const std::string options : {"", " --energy table"}) {
+  for (const std::string options : {"", " --energy sampled"}) {
     const std::vector<float> energy = answers("views.npy --quantity energy" + options);
     ASSERT_EQ(energy.size(), 16u);
     for (std::size_t n = 0; n < energy.size(); n += 2) EXPECT_FLOAT_EQ(energy[n] + energy[n + 1], 1);

@@ -28,6 +28,7 @@ TEST(Words, GiveEachValueOneWord) {
   expect_one_word_a_value<Compensation>(2);
   expect_one_word_a_value<LostEnergy>(2);
   expect_one_word_a_value<Masking>(3);
+  expect_one_word_a_value<EnergyBound>(2);
   expect_one_word_a_value<Distribution>(2);
   expect_one_word_a_value<GlintsDescription::Mapping>(2);
   expect_one_word_a_value<GlintsDescription::Masking>(2);

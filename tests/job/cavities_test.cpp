@@ -21,11 +21,11 @@ TEST(CavitiesInAJob, HaveTheirKeys) {
             "compensation diffuse, compensation-width 2, energy exact, elements 1");
   const MaterialDescription other =
       folder
-          .load(
-              with("compensation = \"specular\"\ncompensation_width = 5\nenergy = \"table\"\nspacing = 0.5"))
+          .load(with(
+              "compensation = \"specular\"\ncompensation_width = 5\nenergy = \"sampled\"\nspacing = 0.5"))
           .scene.materials[0];
   EXPECT_EQ(describe(*other.settings),
-            "compensation specular, compensation-width 5, energy table, elements 2");
+            "compensation specular, compensation-width 5, energy sampled, elements 2");
 }
 
 TEST(CavitiesInAJob, RefuseWhatTheyDoNotTake) {

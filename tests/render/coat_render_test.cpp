@@ -62,7 +62,7 @@ INSTANTIATE_TEST_SUITE_P(
                     on_map("ndf = \"smooth\""), on_map("ndf = \"pyramid\""), on_map("ndf = \"auto\""),
                     on_map("ndf = \"beckmanns\""), on_map("ndf = \"beckmanns\"\nmasking = \"filtered\""),
                     on_map("ndf = \"beckmanns\"\nmasking = \"geometric\""), on_map("ndf = \"cavities\""),
-                    on_map("ndf = \"cavities\"\nenergy = \"table\"\ncompensation = \"specular\""),
+                    on_map("ndf = \"cavities\"\nenergy = \"sampled\"\ncompensation = \"specular\""),
                     on_map("ndf = \"normalmap\"", kOtherLobe),
                     Covered("ndf = \"grid\"\nalpha = [0.3, 0.5]\nmicroroughness = 0.1\ndensity = 1e5\n",
                             kOtherLobe),

@@ -275,7 +275,7 @@ Image killer_case(Techniques techniques, int samples) {
     return Color::Constant(0.05 + 2000 * bulb);
   });
   const std::string material =
-      "surface = \"noise\"\nroughness = 0.01\nrepeat = [40, 40]\nndf = \"cavities\"\nenergy = \"table\"\n";
+      "surface = \"noise\"\nroughness = 0.01\nrepeat = [40, 40]\nndf = \"cavities\"\nenergy = \"sampled\"\n";
   return render_job(plane_job(material, sky, 12, "samples = " + std::to_string(samples), 10), techniques);
 }
 

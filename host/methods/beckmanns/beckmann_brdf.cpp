@@ -76,19 +76,29 @@ BeckmannBrdf::BeckmannBrdf(Device& device, const Surface& surface, const Beckman
                                      device.upload(lobes_.tile_nodes, "the map's bounds")};
   device_bytes_ = lobes_.bytes();
   const WaveForm wave_form = settings.wave_form.value_or(device.wave_form());
-  if (masking_ == Masking::geometric) {
-    densities_.emplace(device, lobes_.grid, std::move(buffers), device_bytes_, "beckmanns/beckmanns",
+  if (masking_ == Masking::geometric)
+    densities_.emplace(device, lobes_.grid, buffers, device_bytes_, "beckmanns/beckmanns",
                        "-DMICA_COUNT_ELEMENTS=0", wave_form, kBatchQueries);
-  } else {
+  const bool bounded = settings.energy_bound == EnergyBound::patch && masking_ != Masking::exact;
+  if (masking_ != Masking::geometric || bounded) {
     const SlopePyramid pyramid = build_slope_pyramid(lobes_, false);
     levels_ = pyramid.levels;
     device_bytes_ += pyramid.bytes();
     buffers.push_back(device.upload(pyramid.numbers, "the pyramid of slopes"));
-    patches_.emplace(device, lobes_.grid, std::move(buffers), device_bytes_, "beckmanns/beckmann_patches",
-                     fmt::format("-DMICA_MASKING={}", masking_ == Masking::exact ? 2 : 1), wave_form,
-                     kBatchQueries, kAnswers);
+    const auto make = [&](Masking masking, std::optional<Patches>* patches) {
+      patches->emplace(device, lobes_.grid, buffers, device_bytes_, "beckmanns/beckmann_patches",
+                       fmt::format("-DMICA_MASKING={}", masking == Masking::exact ? 2 : 1), wave_form,
+                       kBatchQueries, kAnswers);
+    };
+    if (masking_ != Masking::geometric) make(masking_, &patches_);
+    if (bounded) make(Masking::exact, &bound_);
   }
   build_seconds_ = watch_.seconds();
+}
+
+double BeckmannBrdf::device_seconds() const {
+  return (densities_ ? densities_->device_seconds() : patches_->device_seconds()) +
+         (bound_ ? bound_->device_seconds() : 0);
 }
 
 std::vector<BeckmannBrdf::Parts> BeckmannBrdf::geometric_parts(const std::vector<BrdfQuery>& queries) {
@@ -108,9 +118,10 @@ std::vector<BeckmannBrdf::Parts> BeckmannBrdf::geometric_parts(const std::vector
   return parts;
 }
 
-std::vector<BeckmannBrdf::Parts> BeckmannBrdf::patch_parts(const std::vector<BrdfQuery>& queries) {
+std::vector<BeckmannBrdf::Parts> BeckmannBrdf::patch_parts(const std::vector<BrdfQuery>& queries,
+                                                           Masking masking, Patches* patches) {
   std::vector<device_types::mica_patch_query> patch_queries(queries.size());
-  const double ripple = masking_ == Masking::exact ? kSmallRipple : kMiddleRipple;
+  const double ripple = masking == Masking::exact ? kSmallRipple : kMiddleRipple;
   tbb::parallel_for(std::size_t{0}, queries.size(), [&](std::size_t n) {
     const BrdfQuery& query = queries[n];
     device_types::mica_patch_query& patch = patch_queries[n];
@@ -123,7 +134,7 @@ std::vector<BeckmannBrdf::Parts> BeckmannBrdf::patch_parts(const std::vector<Brd
     patch.light_x = light.x(), patch.light_y = light.y(), patch.light_z = light.z();
     patch.weight = static_cast<float>(1 / (2 * kPi * weights.sigma[0] * weights.sigma[1] * weights.sum));
   });
-  const std::vector<float> answers = patches_->start(std::move(patch_queries))->wait();
+  const std::vector<float> answers = patches->start(std::move(patch_queries))->wait();
   std::vector<Parts> parts(queries.size());
   tbb::parallel_for(std::size_t{0}, queries.size(), [&](std::size_t n) {
     // The light's projected area is negative behind the mean normal: nothing is received there.
@@ -134,7 +145,15 @@ std::vector<BeckmannBrdf::Parts> BeckmannBrdf::patch_parts(const std::vector<Brd
 }
 
 std::vector<BeckmannBrdf::Parts> BeckmannBrdf::parts(const std::vector<BrdfQuery>& queries) {
-  return masking_ == Masking::geometric ? geometric_parts(queries) : patch_parts(queries);
+  std::vector<Parts> parts =
+      masking_ == Masking::geometric ? geometric_parts(queries) : patch_parts(queries, masking_, &*patches_);
+  if (!bound_) return parts;
+  const std::vector<Parts> exact = patch_parts(queries, Masking::exact, &*bound_);
+  for (std::size_t n = 0; n < parts.size(); ++n) {
+    parts[n].view_area = std::max(parts[n].view_area, exact[n].view_area);
+    parts[n].light_area = std::max(parts[n].light_area, exact[n].light_area);
+  }
+  return parts;
 }
 
 std::vector<BrdfValue> BeckmannBrdf::evaluate(const std::vector<BrdfQuery>& queries) {

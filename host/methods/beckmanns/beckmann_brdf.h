@@ -14,8 +14,9 @@ namespace mica::host {
 
 struct BeckmannBrdfSettings {
   Masking masking = Masking::exact;
-  int elements = 1;                        ///< lobes a texel and axis
-  std::optional<WaveForm> wave_form = {};  ///< default: what suits the device
+  EnergyBound energy_bound = EnergyBound::none;  ///< exact masking needs none
+  int elements = 1;                              ///< lobes a texel and axis
+  std::optional<WaveForm> wave_form = {};        ///< default: what suits the device
 };
 
 /// `beckmanns`: the BRDF of a mixture of Beckmann lobes, [Che18] Eq. 7, without Fresnel:
@@ -23,6 +24,10 @@ struct BeckmannBrdfSettings {
 /// in which the projected areas A_P cancel. A patch receives light by its own cosine, A_P(i), and not by i.g:
 /// answers are f_P(o, i) A_P(i), with which no patch scatters more than it gets (docs/accuracy.md). With
 /// `geometric` masking A_P(i) is i.g. Nothing bounces twice.
+///
+/// With a bound I(o) and I(i) are no less than those of exact masking: since the integral of <o, h> D(h) over
+/// the normals is I(o), and A(i) <= I(i) with every masking, all lights together are then at most one. The
+/// BRDF stays symmetric, and each answer is asked for twice.
 class BeckmannBrdf : public PatchBrdf {
  public:
   /// Builds the mixture and uploads it. Throws what `build_lobes` throws.
@@ -35,11 +40,11 @@ class BeckmannBrdf : public PatchBrdf {
   std::string name() const override { return "beckmanns"; }
   std::size_t device_bytes() const override { return device_bytes_; }
   double build_seconds() const override { return build_seconds_; }
-  double device_seconds() const override {
-    return densities_ ? densities_->device_seconds() : patches_->device_seconds();
-  }
+  double device_seconds() const override;
 
  private:
+  using Patches = MapBatches<device_types::mica_patch_query>;
+
   /// D of a query's half vector, I of its directions, and the projected area A(i) of the mean normal.
   struct Parts {
     double density = 0, view_area = 0, light_area = 0, light_projected = 0;
@@ -48,7 +53,8 @@ class BeckmannBrdf : public PatchBrdf {
   std::vector<Parts> parts(const std::vector<BrdfQuery>& queries);
   std::vector<Parts> geometric_parts(const std::vector<BrdfQuery>& queries);
   Albedo albedo(const ViewQuery& from);
-  std::vector<Parts> patch_parts(const std::vector<BrdfQuery>& queries);
+  /// @param masking of `patches`: exact or filtered.
+  std::vector<Parts> patch_parts(const std::vector<BrdfQuery>& queries, Masking masking, Patches* patches);
 
   Masking masking_;
   Stopwatch watch_;      ///< of the constructor
@@ -60,7 +66,8 @@ class BeckmannBrdf : public PatchBrdf {
   double cutoff_, build_seconds_ = 0;
   std::size_t device_bytes_ = 0;
   std::optional<MapBatches<device_types::mica_lobe_query>> densities_;  ///< `geometric`
-  std::optional<MapBatches<device_types::mica_patch_query>> patches_;   ///< the others
+  std::optional<Patches> patches_;                                      ///< the others
+  std::optional<Patches> bound_;                                        ///< exact, beside one of these
 };
 
 }  // namespace mica::host

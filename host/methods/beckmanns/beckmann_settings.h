@@ -13,10 +13,14 @@ class BeckmannSettings : public SettingsOf<BeckmannSettings> {
                    "Of a BRDF: of every lobe under the footprint, of one lobe with their moments, or of the "
                    "map's roughness",
                    masking);
+    visitor.choice(visitor.source() == SettingSource::job ? "energy_bound" : "energy-bound",
+                   "Of masking that is an approximation: whether a patch may scatter more than it gets",
+                   energy_bound);
     visit_elements(visitor, elements);
   }
 
   Masking masking = Masking::exact;
+  EnergyBound energy_bound = EnergyBound::none;
   int elements = 1;
 };
 

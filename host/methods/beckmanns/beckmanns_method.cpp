@@ -26,9 +26,10 @@ class BeckmannsMethod : public Method {
   std::unique_ptr<MethodSettings> settings() const override { return std::make_unique<BeckmannSettings>(); }
 
   /// Geometric masking knows one roughness for the whole map, filtered masking one lobe for a patch: only
-  /// exact masking is normalised.
+  /// exact masking is normalised by itself.
   bool conserves_energy(const MethodSettings& settings) const override {
-    return settings_as<BeckmannSettings>(settings).masking == Masking::exact;
+    const auto& own = settings_as<BeckmannSettings>(settings);
+    return own.masking == Masking::exact || own.energy_bound == EnergyBound::patch;
   }
 
   StructureSize structure(const StructureAsked& asked, const MethodSettings& settings) const override {
@@ -37,11 +38,10 @@ class BeckmannsMethod : public Method {
     size.device_bytes =
         (asked.densities ? 2 : 1) * lobe_structure_bytes(asked.width, asked.height, own.elements);
     size.kernel = "beckmanns/beckmanns.cl";
-    if (own.masking != Masking::geometric) {
+    if (own.masking != Masking::geometric || own.energy_bound == EnergyBound::patch)
       size.device_bytes +=
           slope_pyramid_bytes(asked.width * own.elements, asked.height * own.elements, false);
-      size.kernel = "beckmanns/beckmann_patches.cl";
-    }
+    if (own.masking != Masking::geometric) size.kernel = "beckmanns/beckmann_patches.cl";
     return size;
   }
 
@@ -56,7 +56,7 @@ class BeckmannsMethod : public Method {
                                            const MethodSettings& settings) const override {
     const auto& own = settings_as<BeckmannSettings>(settings);
     BeckmannBrdfSettings brdf;
-    brdf.masking = own.masking, brdf.elements = own.elements;
+    brdf.masking = own.masking, brdf.energy_bound = own.energy_bound, brdf.elements = own.elements;
     return std::make_unique<BeckmannBrdf>(*device, *surface, brdf);
   }
 

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include "host/methods/cavities/cavity_brdf.h"
-#include "host/methods/cavities/footprint_energy.h"
 #include "host/methods/map/map_structure.h"
 #include "host/methods/method.h"
 
@@ -17,8 +16,7 @@ class CavityMethodSettings : public SettingsOf<CavityMethodSettings> {
                    "Of the specular compensation of cavities: standard deviation in roughnesses",
                    compensation_width, {0, 1000, true});
     visitor.choice("energy",
-                   "Of cavities, what one bounce loses: of every seed under the footprint, or by a table of "
-                   "roughness and angle",
+                   "Of cavities, what one bounce loses: of every seed under the footprint, or of some",
                    energy);
     if (visitor.source() == SettingSource::job) {
       visitor.number("spacing", "Of seeds, in texels: 1 or 0.5", spacing_texels, {0, 1, true});
@@ -61,7 +59,6 @@ class CavitiesMethod : public Method {
     const auto& own = settings_as<CavityMethodSettings>(settings);
     StructureSize size;
     size.device_bytes = map_structure_bytes(asked.width, asked.height);
-    if (own.energy == LostEnergy::table) size.host_bytes = footprint_energy_bytes(asked.width, asked.height);
     size.kernel = fmt::format("cavities/cavities.cl -DMICA_INTERPOLATION={} -DMICA_SEEDS={}",
                               static_cast<int>(asked.interpolation), own.per_texel);
     return size;

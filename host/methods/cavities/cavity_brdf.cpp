@@ -23,6 +23,10 @@ bool same_view(const ViewQuery& a, const ViewQuery& b) {
          a.footprint.cov_uv == b.footprint.cov_uv;
 }
 
+mica_cavity_query as_cavity_query(const ViewQuery& query, const CavityGrid& cavities, double cutoff) {
+  return to_cavity_query(query, cavities, cutoff);
+}
+
 ViewQuery view_of(const BrdfQuery& query) {
   return {query.footprint, query.view, query.roughness};
 }
@@ -44,7 +48,6 @@ CavityBrdf::CavityBrdf(Device& device, const Surface& surface, const CavitySetti
   const Stopwatch watch;
   const MapStructure map = build_map_structure(surface);
   cavities_ = {map.grid, surface.interpolation(), settings.per_texel, settings.compensation_width};
-  if (settings.energy == LostEnergy::table) table_.emplace(surface);
   build_seconds_ = watch.seconds();
 
   const std::string options =
@@ -57,10 +60,20 @@ CavityBrdf::CavityBrdf(Device& device, const Surface& surface, const CavitySetti
                                              device.upload(map.tile_nodes, "the map's bounds")};
   bounces_.emplace(device, map.grid, structure, map.bytes(), "cavities/cavities", options, form,
                    settings.batch_queries);
-  energies_.emplace(device, map.grid, structure, 0, "cavities/cavity_energies", options, form,
-                    settings.batch_queries);
-  draws_.emplace(device, map.grid, std::vector<cl::Buffer>{structure[0]}, 0, "cavities/cavity_draws", options,
-                 form, settings.batch_queries, 3);
+  const std::vector<cl::Buffer> normals = {structure[0]};
+  if (settings.energy == LostEnergy::sampled)
+    sampled_energies_.emplace(device, map.grid, normals, 0, "cavities/cavity_samples", options, form,
+                              settings.batch_queries);
+  else
+    energies_.emplace(device, map.grid, structure, 0, "cavities/cavity_energies", options, form,
+                      settings.batch_queries);
+  draws_.emplace(device, map.grid, normals, 0, "cavities/cavity_draws", options, form, settings.batch_queries,
+                 3);
+}
+
+double CavityBrdf::device_seconds() const {
+  return bounces_->device_seconds() + draws_->device_seconds() +
+         (energies_ ? energies_->device_seconds() : sampled_energies_->device_seconds());
 }
 
 std::vector<BrdfValue> CavityBrdf::evaluate(const std::vector<BrdfQuery>& queries) {
@@ -85,16 +98,17 @@ std::vector<BrdfValue> CavityBrdf::evaluate(const std::vector<BrdfQuery>& querie
   return values;
 }
 
+template <typename DeviceQuery, typename Translate>
+std::vector<float> CavityBrdf::ask(MapBatches<DeviceQuery>* batches, const std::vector<ViewQuery>& queries,
+                                   const std::vector<std::size_t>& asked, const Translate& translate) const {
+  std::vector<DeviceQuery> views(asked.size());
+  tbb::parallel_for(std::size_t{0}, asked.size(),
+                    [&](std::size_t n) { views[n] = translate(queries[asked[n]], cavities_, cutoff_); });
+  return batches->start(std::move(views))->wait();
+}
+
 std::vector<Albedo> CavityBrdf::energy(const std::vector<ViewQuery>& queries) {
   std::vector<Albedo> albedos(queries.size());
-  if (table_) {
-    tbb::parallel_for(std::size_t{0}, queries.size(), [&](std::size_t n) {
-      if (!(queries[n].view.z() > 0)) return;
-      albedos[n].lost = static_cast<float>(table_->lost(queries[n]));
-      albedos[n].single = 1 - albedos[n].lost;
-    });
-    return albedos;
-  }
   // Lights that share a view come one after the other.
   std::vector<std::size_t> place(queries.size());
   std::vector<std::size_t> firsts;
@@ -102,11 +116,9 @@ std::vector<Albedo> CavityBrdf::energy(const std::vector<ViewQuery>& queries) {
     if (n == 0 || !same_view(queries[n - 1], queries[n])) firsts.push_back(n);
     place[n] = firsts.size() - 1;
   }
-  std::vector<mica_cavity_query> views(firsts.size());
-  tbb::parallel_for(std::size_t{0}, firsts.size(), [&](std::size_t n) {
-    views[n] = to_cavity_query(queries[firsts[n]], cavities_, cutoff_);
-  });
-  const std::vector<float> energies = energies_->start(std::move(views))->wait();
+  const std::vector<float> energies = sampled_energies_
+                                          ? ask(&*sampled_energies_, queries, firsts, to_sampled_query)
+                                          : ask(&*energies_, queries, firsts, as_cavity_query);
   for (std::size_t n = 0; n < queries.size(); ++n) {
     if (!(queries[n].view.z() > 0)) continue;
     albedos[n].single = std::min(energies[place[n]], 1.0f);

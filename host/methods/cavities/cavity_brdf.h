@@ -8,7 +8,6 @@
 #include "host/device/device.h"
 #include "host/methods/cavities/cavity_query.h"
 #include "host/methods/cavities/compensation.h"
-#include "host/methods/cavities/footprint_energy.h"
 #include "host/methods/map/map_batches.h"
 #include "host/methods/patch_brdf.h"
 #include "host/surface/surface.h"
@@ -33,7 +32,7 @@ struct CavitySettings {
 /// F(o.h) single + F(o.g) multiple.
 ///
 /// Directions are drawn by [Che19] Algorithm 1: with `exact` their density is single + multiple. It is the
-/// same draw with `table`, whose `pdf` is off by as much as its lost energy. Weights are 1 for the sum of
+/// same draw with `sampled`, whose `pdf` is off by as much as its lost energy. Weights are 1 for the sum of
 /// both parts, whatever the view.
 class CavityBrdf : public PatchBrdf {
  public:
@@ -47,21 +46,22 @@ class CavityBrdf : public PatchBrdf {
 
   std::string name() const override { return "cavities"; }
   std::size_t device_bytes() const override { return bounces_->device_bytes(); }
-  std::size_t host_bytes() const { return table_ ? table_->bytes() : 0; }  ///< of the table's moments
   double build_seconds() const override { return build_seconds_; }
-  double device_seconds() const override {
-    return bounces_->device_seconds() + energies_->device_seconds() + draws_->device_seconds();
-  }
+  double device_seconds() const override;
 
  private:
+  /// What the queries at the places `asked` are answered.
+  template <typename DeviceQuery, typename Translate>
+  std::vector<float> ask(MapBatches<DeviceQuery>* batches, const std::vector<ViewQuery>& queries,
+                         const std::vector<std::size_t>& asked, const Translate& translate) const;
   std::vector<Eigen::Vector3d> draw(const std::vector<SampleQuery>& queries);
 
   Compensation compensation_;
   CavityGrid cavities_;
   double cutoff_, build_seconds_ = 0;
-  std::optional<FootprintEnergy> table_;
   std::optional<MapBatches<device_types::mica_map_query>> bounces_;
   std::optional<MapBatches<device_types::mica_cavity_query>> energies_, draws_;
+  std::optional<MapBatches<device_types::mica_sampled_cavity_query>> sampled_energies_;
 };
 
 }  // namespace mica::host

@@ -19,6 +19,13 @@ double seen_area(const Eigen::Vector3d& direction, const Eigen::Vector3d& half) 
   return std::max(2 * height, height + tilt);
 }
 
+constexpr double kCellsASigma = 12;   // of a lattice of samples
+constexpr double kSampleReach = 3.1;  // as SAMPLE_REACH of kernels/cavities/cavity_samples.cl
+
+std::int32_t step_of(double seeds) {
+  return static_cast<std::int32_t>(std::max(std::floor(seeds), 1.0));
+}
+
 }  // namespace
 
 SeedWeights seed_weights(const Footprint& footprint, const CavityGrid& cavities) {
@@ -71,6 +78,31 @@ device_types::mica_cavity_query to_cavity_query(const ViewQuery& query, const Ca
   result.roughness = static_cast<float>(query.roughness);
   result.lobe_sigma = static_cast<float>(specular_lobe_sigma(query.roughness, cavities.compensation_width));
   if (!(query.view.z() > 0)) result.map.cutoff = -1;  // nothing is looked at
+  return result;
+}
+
+device_types::mica_sampled_cavity_query to_sampled_query(const ViewQuery& query, const CavityGrid& cavities,
+                                                         double cutoff) {
+  device_types::mica_sampled_cavity_query result{};
+  result.cavity = to_cavity_query(query, cavities, cutoff);
+  const SeedWeights weights = seed_weights(query.footprint, cavities);
+  const int period_x = cavities.grid.width * cavities.per_texel,
+            period_y = cavities.grid.height * cavities.per_texel;
+  wrap_texel(weights.mean_seeds.x() / period_x, period_x, 0, &result.mean_i, &result.mean_x);
+  wrap_texel(weights.mean_seeds.y() / period_y, period_y, 0, &result.mean_j, &result.mean_y);
+  const Eigen::Matrix2d& cov = weights.cov_seeds;
+  const double sigma_y = std::sqrt(cov(1, 1)), shear = cov(0, 1) / cov(1, 1),
+               sigma_x = std::sqrt(cov(0, 0) - shear * cov(0, 1));
+  result.sigma_x = static_cast<float>(sigma_x), result.sigma_y = static_cast<float>(sigma_y);
+  result.shear = static_cast<float>(shear);
+  // As many cells in a footprint that is thin one way: more of them the other way.
+  const double cells = kCellsASigma * kCellsASigma;
+  result.step_x = step_of(sigma_x * std::min(sigma_y, kCellsASigma) / cells);
+  result.step_y = step_of(sigma_y * (sigma_x / result.step_x) / cells);
+  const double groups = (2 * kSampleReach * sigma_x / result.step_x + 1) *
+                        (2 * kSampleReach * sigma_y / result.step_y + 1) / 16;
+  result.blur_step = 1;
+  while (result.blur_step < 16 && 2 * result.blur_step <= groups) result.blur_step *= 2;
   return result;
 }
 

@@ -37,4 +37,9 @@ device_types::mica_map_query to_cavity_query(const BrdfQuery& query, const Cavit
 device_types::mica_cavity_query to_cavity_query(const ViewQuery& query, const CavityGrid& cavities,
                                                 double cutoff);
 
+/// The query of kernels/cavities/cavity_samples.cl: cells of one seed each, all of them, up to twelve of them
+/// in a standard deviation of the footprint; wider ones have more than one seed.
+device_types::mica_sampled_cavity_query to_sampled_query(const ViewQuery& query, const CavityGrid& cavities,
+                                                         double cutoff);
+
 }  // namespace mica::host

@@ -21,8 +21,11 @@ Device& device() {
   return shared;
 }
 
-std::unique_ptr<PatchBrdf> beckmanns(const Surface& surface, Masking masking) {
-  return make_patch_brdf("beckmanns", device(), surface, {{"masking", std::string(word_of(masking))}});
+std::unique_ptr<PatchBrdf> beckmanns(const Surface& surface, Masking masking,
+                                     EnergyBound bound = EnergyBound::none) {
+  return make_patch_brdf(
+      "beckmanns", device(), surface,
+      {{"masking", std::string(word_of(masking))}, {"energy-bound", std::string(word_of(bound))}});
 }
 
 Eigen::Vector3d direction(double degrees, double azimuth) {
@@ -97,6 +100,31 @@ TEST(PatchEnergy, NoPatchScattersMoreThanItGets) {
   std::printf("%.4f to %.4f of the light; %.4f at most by filtered masking; energy is off by %.4f\n", least,
               most, most_filtered, apart);
   EXPECT_LE(apart, 0.03);  // three standard errors of 1024 random normals whose shares spread by 0.3
+}
+
+/// What a direction sees of the patch is at least what its lobes show: no masking gains then, and exchanging
+/// view and light changes nothing but the cosine of what receives.
+TEST(PatchEnergy, ABoundHoldsWhateverTheMasking) {
+  const Surface surface =
+      make_surface({"test", SpectrumSurface{64, 0.6, 6, 3}, Interpolation::bilinear}, nullptr);
+  const auto geometric = beckmanns(surface, Masking::geometric),
+             bounded = beckmanns(surface, Masking::geometric, EnergyBound::patch),
+             filtered = beckmanns(surface, Masking::filtered, EnergyBound::patch);
+  double most = 0, gain = 0;
+  for (const ViewQuery& view : patches(surface, 20)) {
+    gain = std::max(gain, scattered(geometric.get(), view));
+    for (PatchBrdf* brdf : {bounded.get(), filtered.get()}) {
+      const double energy = scattered(brdf, view);
+      most = std::max(most, energy);
+      EXPECT_LE(energy, 1.005) << "view " << view.view.transpose();
+    }
+    const Eigen::Vector3d light = direction(40, 1);
+    const double there = bounded->evaluate({{view.footprint, view.view, light, view.roughness}})[0].single,
+                 back = bounded->evaluate({{view.footprint, light, view.view, view.roughness}})[0].single;
+    EXPECT_NEAR(there * view.view.z(), back * light.z(), 1e-4 * there);
+  }
+  std::printf("geometric masking: %.3f at most, %.4f with a bound\n", gain, most);
+  EXPECT_GT(gain, 1.1);
 }
 
 }  // namespace

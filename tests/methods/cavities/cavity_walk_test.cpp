@@ -204,7 +204,7 @@ TEST(CavityDraws, FallAsTheirDensity) {
 /// Weights are 1, and never more: [Che19] sec. 3.6.
 TEST(CavityDraws, HaveWeightsOfOne) {
   Device device(0);
-  for (const LostEnergy energy : {LostEnergy::exact, LostEnergy::table}) {
+  for (const LostEnergy energy : {LostEnergy::exact, LostEnergy::sampled}) {
     for (const Case& test : figure_11()) {
       CavitySettings settings;
       settings.energy = energy;
