@@ -25,6 +25,7 @@ struct Words<Compensation> {
 template <>
 struct Words<LostEnergy> {
   static constexpr Word<LostEnergy> all[] = {{"exact", LostEnergy::exact}, {"sampled", LostEnergy::sampled}};
+  static constexpr Word<LostEnergy> former[] = {{"table", LostEnergy::sampled}};
 };
 
 }  // namespace mica::host

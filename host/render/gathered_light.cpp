@@ -6,6 +6,7 @@
 #include "host/microfacet/horizon.h"
 #include "host/microfacet/low_discrepancy.h"
 #include "host/render/surface_light.h"
+#include "host/scene/bounce_fresnel.h"
 #include "host/scene/shading.h"
 
 namespace mica::host {
@@ -26,11 +27,11 @@ enum Stream : std::uint64_t {
 GatheredLight::GatheredLight(const GatheringContext& context, const LitPoint& point, std::uint64_t key)
     : context_(context),
       point_(point),
-      material_(context.scene.layers(point.material).material),
+      layers_(context.scene.layers(point.material)),
       key_(key),
       view_(point.frame.to_local(point.to_eye)),
-      crossing_(context.scene.layers(point.material), view_),
-      smooth_(context.scene.layers(point.material)),
+      crossing_(layers_, view_),
+      smooth_(layers_),
       has_smooth_(point.process == 0 && !smooth_.is_black()) {}
 
 bool GatheredLight::faces(const Eigen::Vector3d& world) const {
@@ -106,7 +107,7 @@ SampleQuery GatheredLight::sample_query(std::size_t n) const {
 }
 
 void GatheredLight::add(const LightDraw& draw, const BrdfValue& value) {
-  const BounceFresnel fresnel(material_.specular, crossing_.view_below(), crossing_.below(draw.local));
+  const BounceFresnel fresnel(layers_, crossing_.view_below(), crossing_.below(draw.local));
   const Color reflected = value.single * fresnel.single + value.multiple * fresnel.multiple;
   const double pdf = uses_brdf() ? value.pdf * crossing_.density_scale(draw.local) : 0;
   sum_ += tint(value.tint)
@@ -123,7 +124,7 @@ void GatheredLight::add(const BrdfSample& sample, std::size_t n) {
   const double density_scale = crossing_.density_scale(local);
   const Color radiance = drawn_radiance(local, sample.pdf * density_scale, random_bits(key_, kBrdfPath, n));
   if (radiance.isZero(0)) return;
-  const BounceFresnel fresnel(material_.specular, crossing_.view_below(), below);
+  const BounceFresnel fresnel(layers_, crossing_.view_below(), below);
   const Color weight = sample.weight_single * fresnel.single + sample.weight_multiple * fresnel.multiple;
   sum_ += tint(sample.tint)
               .cwiseProduct(weight)

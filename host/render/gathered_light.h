@@ -64,7 +64,7 @@ class GatheredLight {
 
   const GatheringContext& context_;
   const LitPoint& point_;
-  const MaterialDescription& material_;
+  const LayeredMaterial& layers_;
   std::uint64_t key_;
   Eigen::Vector3d view_;  // in the point's frame
   CoatCrossing crossing_;

@@ -76,8 +76,8 @@ std::string render_json(const Job& job, const DeviceInfo& device, const RenderRe
   json["device_bytes"] = result.device_bytes;
   json["seconds"] = {{"surfaces", s.surfaces}, {"scene", s.scene}, {"build", s.build},
                      {"render", s.render},     {"trace", s.trace}, {"gather", s.gather},
-                     {"refine", s.refine},
-                     {"wait", s.wait},         {"audit", s.audit}, {"total", s.total}};
+                     {"refine", s.refine},     {"wait", s.wait},   {"audit", s.audit},
+                     {"total", s.total}};
   json["queries"] = result.queries;
   json["refined_pixels"] = result.refined_pixels;
   json["device_seconds"] = result.device_seconds;

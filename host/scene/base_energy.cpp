@@ -149,6 +149,10 @@ Color BaseEnergy::diffuse(double cos_o, double cos_i) const {
          (transmittance(cos_o, ior_) * transmittance(cos_i, ior_));
 }
 
+Color BaseEnergy::mirrored(double cos_below) const {
+  return Color::Ones() - interpolated(passed_, place(cos_below));
+}
+
 Color BaseEnergy::interreflection(double cos_o, double cos_i) const {
   if (trapped_ == 0) return Color::Ones();
   return interpolated(repeated_, place(inside(cos_o, ior_)))

@@ -27,6 +27,9 @@ class BaseEnergy {
   /// f of the diffuse lobe, outside. @param cos_o, cos_i outside, (0, 1]. @return 1/sr.
   Color diffuse(double cos_o, double cos_i) const;
 
+  /// The share R of the light that the base mirrors. @param cos_below in the coat, (0, 1].
+  Color mirrored(double cos_below) const;
+
   /// What mirrored light is multiplied with, for that between base and coat; 1 without a coat.
   Color interreflection(double cos_o, double cos_i) const;
 

@@ -7,7 +7,6 @@
 
 #include "host/base/constants.h"
 #include "host/microfacet/horizon.h"
-#include "host/scene/fresnel.h"
 
 namespace mica::host {
 namespace {
@@ -118,11 +117,6 @@ TangentFrame tangent_frame(const Hit& hit, const Eigen::Vector3d& to_eye) {
 Illumination illuminate(const LightDescription& light, const Eigen::Vector3d& position) {
   return std::visit(Illuminate{position}, light);
 }
-
-BounceFresnel::BounceFresnel(const Fresnel& fresnel, const Eigen::Vector3d& view,
-                             const Eigen::Vector3d& light)
-    : single(reflectance(fresnel, light.dot((view + light).normalized()))),
-      multiple(reflectance(fresnel, view.z())) {}
 
 bool has_extent(const LightDescription& light) {
   if (const auto* sphere = std::get_if<SphereLight>(&light)) return sphere->radius > 0;

@@ -35,14 +35,6 @@ struct Illumination {
 };
 Illumination illuminate(const LightDescription& light, const Eigen::Vector3d& position);
 
-/// What the two parts of a patch BRDF are multiplied with: light that bounced once takes Fresnel's factor at
-/// the half vector, light that bounced more often that of the view on the geometric normal, [Che19] Eq. 11.
-struct BounceFresnel {
-  /// @param view, light unit, in the tangent frame.
-  BounceFresnel(const Fresnel& fresnel, const Eigen::Vector3d& view, const Eigen::Vector3d& light);
-  Color single, multiple;
-};
-
 /// Whether a light is more than a point or a direction, so that its shadows have penumbras.
 bool has_extent(const LightDescription& light);
 

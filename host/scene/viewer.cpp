@@ -1,6 +1,7 @@
 #include "host/scene/viewer.h"
 
 #include "host/microfacet/horizon.h"
+#include "host/scene/bounce_fresnel.h"
 #include "host/scene/coat_crossing.h"
 #include "host/scene/footprint.h"
 #include "host/scene/wrap.h"
@@ -108,7 +109,7 @@ LitBrdf Viewer::lit_brdf(const GlintQuery& query, const SeenPoint& point,
   lit.sample = query.sample;
   lit.material = query.material;
   const Color irradiance = incident.irradiance.cwiseProduct(crossing.value_scale(light));
-  const BounceFresnel fresnel(material.material.specular, lit.query.view, lit.query.light);
+  const BounceFresnel fresnel(material, lit.query.view, lit.query.light);
   lit.weight_single = fresnel.single.cwiseProduct(irradiance).cast<float>();
   lit.weight_multiple = fresnel.multiple.cwiseProduct(irradiance).cast<float>();
   return lit;

@@ -113,7 +113,7 @@ typedef int16 wave_int_anywhere __attribute__((aligned(4)));
 typedef short16 wave_short_anywhere __attribute__((aligned(2)));
 typedef char16 wave_char_anywhere __attribute__((aligned(1)));
 // Compilers that spread neighbouring work-items over a vector are told that each has vectors of its own:
-// Intel's runtime would take them apart, at a fifteenth of the speed.
+// Intel's runtime would take them apart, and be slower by far.
 #define WAVE_KERNEL kernel __attribute__((vec_type_hint(float16)))
 #define WAVE_SHARED private
 #define WAVE_DECLARE_SCRATCH(name) int name[1]

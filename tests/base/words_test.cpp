@@ -40,6 +40,12 @@ TEST(Words, GiveEachValueOneWord) {
   expect_one_word_a_value<ToneMap>(4);
 }
 
+TEST(Words, ThatWereOthersAreUnderstood) {
+  EXPECT_EQ(parse_word<LostEnergy>("table"), LostEnergy::sampled);
+  const std::vector<std::string> listed = list_words<LostEnergy>();
+  EXPECT_EQ(listed, std::vector<std::string>({"exact", "sampled"}));
+}
+
 TEST(Words, AreThoseOfTheCommandLine) {
   EXPECT_EQ(word_of(Encoding::signed_float), "signed");
   EXPECT_EQ(parse_word<Distribution>("ggx"), Distribution::trowbridge_reitz);
