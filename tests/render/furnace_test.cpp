@@ -133,10 +133,9 @@ TEST_P(Furnace, ReturnsWhatItPromises) {
 Material on_map(const std::string& name, const std::string& keys, double least, double most) {
   return {name, keys, least, most};
 }
-/// Light that bounces inside cavities has Fresnel's factor along g, [Che19] Eq. 11: near the horizon that is
-/// more than what the base is told that the mirror takes.
+/// The base is told what a lobe with the map's moments mirrors: near the horizon a patch mirrors more.
 Material of_cavities(const std::string& name, const std::string& keys) {
-  return {"`cavities`, " + name, "ndf = \"cavities\"\n" + keys, 0.99, 1.005, true, 1.08};
+  return {"`cavities`, " + name, "ndf = \"cavities\"\n" + keys, 0.99, 1.005, true, 1.06};
 }
 Material of_glints(const std::string& name, const std::string& keys, double least, double most) {
   return {name, "ndf = \"grid\"\nalpha = 0.4\nmicroroughness = 0.05\ndensity = 1e8\n" + keys, least, most,
