@@ -2,19 +2,17 @@
 
     equal_error.py MICA FOLDER
 
-A ball of 62 pixels' radius under a far lamp, its normals a map of random slopes, 4 and 32 texels a pixel where it faces
-the camera, roughness 0.02 and 0.005 (Mitsuba's alpha is sqrt(2) of it); a Gaussian filter of half a pixel in both. Mica's error is that against its
-picture of 16 times the size, convolved; Mitsuba's the one that two independent renderings say, whose fall with the
-number of samples is measured and carried on. CPU seconds of both: of Mica the whole command, of Mitsuba the rendering
+A ball of 62 pixels' radius under a far lamp, its normals a map of random slopes, roughness 0.02 and 0.005 (Mitsuba's alpha
+is sqrt(2) of it); a Gaussian filter of half a pixel in both. Mica's error is that against its picture of 16 times the
+size, convolved; Mitsuba's the one that two independent renderings say, whose fall with the number of samples is measured
+from 256 to 4096 and carried on. CPU seconds of both: of Mica the whole command, of Mitsuba the rendering
 alone. Needs mitsuba and numpy from PyPI, and an LLVM that Mitsuba accepts, without which it is slower by far."""
 
-import json
 import math
 import pathlib
 import resource
 import subprocess
 import sys
-import time
 
 import mitsuba as mi
 import numpy as np
@@ -87,7 +85,7 @@ def mitsuba_scene(folder, repeat, roughness):
 
 
 def mitsuba(scene, samples, seed):
-    before, wall = resource.getrusage(resource.RUSAGE_SELF), time.time()
+    before = resource.getrusage(resource.RUSAGE_SELF)
     picture = np.array(mi.render(scene, spp=samples, seed=seed))[..., 1].astype(float)
     after = resource.getrusage(resource.RUSAGE_SELF)
     return picture, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
@@ -106,8 +104,8 @@ def main():
     resolution = 512
     write_map(folder / "map.exr", resolution)
     print(f"{mi.variant()}; CPU seconds")
-    for texels in (4, 32):
-        repeat = max(1, round(texels * 62 * math.pi / resolution))  # along v: half a turn is pi radii
+    for repeat in (2, 12):
+        texels = repeat * resolution / (62 * math.pi)  # a pixel, where the ball faces the camera
         for roughness in (0.02, 0.005):
             shown, seconds = mica(program, folder, repeat, roughness)
             truth = convolved(mica(program, folder, repeat, roughness, f"image.width={SIZE * FINE}", f"image.height={SIZE * FINE}",
@@ -118,7 +116,7 @@ def main():
             (few, _), (many, its_seconds) = error_of_mitsuba(scene, 256), error_of_mitsuba(scene, 4096)
             slope = math.log(few / many) / math.log(16)
             needed = its_seconds * max(many / error, 1e-9) ** (1 / slope)
-            print(f"{texels} texels a pixel, roughness {roughness}: Mica {error:.2%} in {seconds:.2f} s; Mitsuba {many:.2%} of "
+            print(f"{texels:.0f} texels a pixel, roughness {roughness}: Mica {error:.2%} in {seconds:.2f} s; Mitsuba {many:.2%} of "
                   f"4096 samples in {its_seconds:.1f} s, falling as samples^-{slope:.2f}: as near in {needed:.0f} s, "
                   f"{needed / seconds:.0f} times as long", flush=True)
 
