@@ -50,7 +50,7 @@ const std::vector<Mistake> kUnknownKeys = {
      "material.gold.\"a b\": found an unknown key; expected one of: repeat, ndf, surface, roughness, "
      "elements, "
      "masking, "
-     "tolerance, "
+     "energy_bound, tolerance, "
      "specular, "
      "diffuse, multiple_scattering, id, coat"},
 };
