@@ -56,8 +56,7 @@ class BlockTracer {
     for (int row = first_seen_; row < end_seen_; ++row)
       for (int column = 0; column < width_; ++column) {
         const bool of_rows = row >= 0 && row < rows_.row_count;
-        if (!of_rows || !which[static_cast<std::size_t>(row * width_ + column)])
-          fits_.at(row, column).emplace();
+        if (!of_rows || !which[pixel_of(row, column)]) fits_.at(row, column).emplace();
       }
     sampled_around_ = std::min(margin_, 1);
     return take_samples();
@@ -104,6 +103,11 @@ class BlockTracer {
     };
     const int first = margin_ * pixels_.subpixels;
     return counts(down + first) && counts(right + first);
+  }
+  /// Of one of the block's rows.
+  std::size_t pixel_of(int row, int column) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(width_) +
+           static_cast<std::size_t>(column);
   }
   bool is_sampled(int row, int column) const {
     return row >= first_seen_ && row < end_seen_ && column >= 0 && column < width_ && !has_fit(row, column);
@@ -183,8 +187,7 @@ void BlockTracer::write_fits(int row, RowQueries* queries) {
   for (int column = 0; column < width_; ++column) {
     std::optional<FittedPixel>& fitted = fits_.at(row, column);
     if (!fitted) continue;
-    const std::size_t pixel =
-        static_cast<std::size_t>(row) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(column);
+    const std::size_t pixel = pixel_of(row, column);
     rows_.fitted[pixel] = 1;
     rows_.radiance[pixel] = fitted->radiance.cast<float>();
     PixelMeans means;
