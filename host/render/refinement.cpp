@@ -14,7 +14,8 @@ namespace {
 constexpr std::uint64_t kLooks = 0x6c6f6f6b;  // a stream of random numbers
 constexpr int kLooksAlong = 16;               // rows that are looked at, and pixels of each
 constexpr int kLookSubpixels = 2;             // of those pixels
-constexpr int kFinestBy = 4;                  // along each axis
+constexpr std::size_t kFewQueries = 1024;
+constexpr int kFinestBy = 4;  // along each axis
 /// Of the root mean square of a picture and its tolerance: a change of a pixel that may stay, in a picture
 /// 160 pixels wide. The pixels that need samples lie along lines: the wider a picture is the fewer they are.
 constexpr double kChangeOfTolerance = 4, kWidth = 160;
@@ -37,14 +38,30 @@ struct Samples {
   }
 };
 
+/// Densities of all queries of rows, few at a time: the device has a block of rows in flight besides. Tints
+/// the weights of glints.
+std::vector<float> densities_of(const BuiltJob& built, TracedRows* rows, std::size_t queries_at_a_time) {
+  std::vector<float> densities;
+  for (std::size_t first = 0; first < rows->queries.size(); first += queries_at_a_time) {
+    const std::size_t count = std::min(queries_at_a_time, rows->queries.size() - first);
+    const auto begin = rows->queries.begin() + static_cast<std::ptrdiff_t>(first);
+    TracedRows some;
+    some.queries.assign(begin, begin + static_cast<std::ptrdiff_t>(count));
+    PendingBlock block(std::move(some), built);
+    const std::vector<float> answers = block.wait();
+    densities.insert(densities.end(), answers.begin(), answers.end());
+    std::copy(block.rows().queries.begin(), block.rows().queries.end(), begin);
+  }
+  return densities;
+}
+
 Samples sample(const BuiltJob& built, int first_row, int row_count, const std::vector<bool>& which,
-               const PixelSettings& pixels, std::size_t* queries) {
+               const PixelSettings& pixels, std::size_t queries_at_a_time, std::size_t* queries) {
   TracedRows rows = built.scene().sample(first_row, row_count, which, pixels);
   *queries += rows.queries.size() + add_lit_brdfs(built, &rows);
-  PendingBlock block(std::move(rows), built);
-  const std::vector<float> densities = block.wait();
+  const std::vector<float> densities = densities_of(built, &rows, queries_at_a_time);
   FilmRepairs repairs;  // what is black for that reason was so before
-  return {block.rows().lattice, sample_radiance_of(block.rows(), densities, &repairs)};
+  return {rows.lattice, sample_radiance_of(rows, densities, &repairs)};
 }
 
 /// Mean square of luminance, by a few pixels all over the picture.
@@ -68,7 +85,7 @@ double mean_square(const BuiltJob& built) {
       columns.push_back(place(m, image.width, (n + 1) * kLooksAlong + m));
       which[static_cast<std::size_t>(columns.back())] = true;
     }
-    const Samples samples = sample(built, place(n, image.height, n), 1, which, pixels, &queries);
+    const Samples samples = sample(built, place(n, image.height, n), 1, which, pixels, kFewQueries, &queries);
     for (const int column : columns)
       sum += std::pow(luminance(samples.sum(0, column, kNear)), 2) / (kLooksAlong * kLooksAlong);
   }
@@ -134,7 +151,8 @@ std::size_t Refinement::refine(TracedRows* rows, const std::vector<float>& densi
   const int finest = kFinestBy * pixels.subpixels;
   while (pixels.subpixels < finest && count > 0) {
     pixels.subpixels *= 2;
-    const Samples fine = sample(built_, rows->first_row, rows->row_count, doubtful, pixels, &queries);
+    const Samples fine = sample(built_, rows->first_row, rows->row_count, doubtful, pixels,
+                                std::max(kFewQueries, densities.size() / 16), &queries);
     count = 0;
     each_doubtful([&](std::size_t pixel, int row, int column) {
       // What is further away has hardly any weight, and stays.
