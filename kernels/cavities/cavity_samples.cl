@@ -48,9 +48,9 @@ static inline int first_blur(int column, int row, int step) {
 }
 
 // E_1 of every query, in the order of their slots. Global size: queries (vectors), or 16 a query (items).
-kernel void cavity_samples(global const mica_sampled_cavity_query* restrict queries, int query_count,
-                           mica_map_grid grid, global const int* restrict normals,
-                           global float* restrict energy) {
+WAVE_KERNEL void cavity_samples(global const mica_sampled_cavity_query* restrict queries, int query_count,
+                                mica_map_grid grid, global const int* restrict normals,
+                                global float* restrict energy) {
   WAVE_DECLARE_SCRATCH(scratch);
   if (WAVE_ITEM_INDEX >= query_count) return;
   global const mica_sampled_cavity_query* query = queries + WAVE_ITEM_INDEX;
