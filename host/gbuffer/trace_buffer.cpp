@@ -146,7 +146,7 @@ void BufferBlock::probe(int row, int column) {
   gradients_.at(row, column) = surface_gradient(buffer_.pixels, row, column);
   SeenPoint point = point_at(row, column);
   see_lamps(&point);
-  probes_.at(row, column) = probe_of(point);
+  probes_.at(row, column) = probe_of(viewer_, point);
 }
 
 SeenPoint BufferBlock::point_at(int row, int column) const {
@@ -174,7 +174,7 @@ SeenPoint BufferBlock::point_at(int row, int column) const {
 /// Without shadows, which the buffer knows of at the pixel itself.
 void BufferBlock::see_lamps(SeenPoint* point) const {
   if (!point->faces_eye) return;
-  viewer_.see_lamps({{0, 0}}, point);
+  viewer_.see_lamps({{{0, 0}}, {}}, point);
   for (std::size_t n = 0; n < point->lamps.size(); ++n) {
     if (!view_.lamps[n].cone) continue;
     const double share = view_.lamps[n].cone->share(point->hit->position);

@@ -40,6 +40,7 @@ struct AuditSettings {
 
 struct AccuracySettings {
   double tolerance = 0.01;  ///< relative L2 that materials keep whose method takes one
+  int lamp_parts = 1;       ///< into which a lamp with extent may be cut to keep it, 1..kMostLampParts
 };
 
 /// A validated job: everything in range, every name resolved, every input file present.

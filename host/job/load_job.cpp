@@ -11,6 +11,7 @@
 #include "host/job/read_job.h"
 #include "host/job/toml_document.h"
 #include "host/scene/aovs.h"
+#include "host/scene/disk_cells.h"
 
 namespace mica::host {
 namespace {
@@ -126,6 +127,7 @@ void read_root(TableReader& table, Job& job, JobUse use) {
   }
   table.read_table("accuracy", [&](TableReader& accuracy) {
     accuracy.read("tolerance", job.accuracy.tolerance, closed(5e-4, 0.5));
+    accuracy.read("lamp_parts", job.accuracy.lamp_parts, closed(1, kMostLampParts));
   });
   for (MaterialDescription& material : job.scene.materials) give_tolerance(job, &material);
   table.read_table("audit", [&](TableReader& audit) {

@@ -112,7 +112,12 @@ void read_surface(TableReader& table, MaterialDescription& material,
   for (const SurfaceDescription& surface : surfaces) names.push_back(surface.name);
   table.require("surface", "the name of a surface");
   table.read_reference("surface", material.surface, "surface", names);
-  table.read("roughness", material.roughness, closed(1e-4, 1));
+  Eigen::Vector2d roughness = Eigen::Vector2d::Constant(material.roughness);
+  table.read_one_or_two("roughness", roughness, closed(1e-4, 1));
+  material.roughness = roughness.x();
+  if (roughness.x() == roughness.y()) return;
+  material.roughness = std::sqrt(roughness.squaredNorm() / 2);
+  material.long_roughness = roughness;
 }
 
 void read_id(TableReader& table, MaterialDescription& material,

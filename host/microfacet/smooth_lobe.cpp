@@ -54,9 +54,10 @@ Eigen::Vector2d SmoothLobe::slope(const Eigen::Vector2d& uniform) const {
   return axes_ * alphas_.cwiseProduct(std::sqrt(radius2) * Eigen::Vector2d(std::cos(turn), std::sin(turn)));
 }
 
-SmoothLobe SmoothLobe::narrowed(double roughness) const {
-  return SmoothLobe(distribution_, slope_moments_ - roughness * roughness * Eigen::Matrix2d::Identity(),
-                    masking_);
+SmoothLobe SmoothLobe::narrowed(const Eigen::Vector2d& roughness) const {
+  Eigen::Matrix2d moments = slope_moments_;
+  moments.diagonal() -= roughness.cwiseAbs2();
+  return SmoothLobe(distribution_, moments, masking_);
 }
 
 double SmoothLobe::mean_alpha() const {

@@ -35,8 +35,9 @@ class SmoothLobe {
   /// The slope of a normal: normals that are drawn with uniform numbers have D as their density on the disk.
   Eigen::Vector2d slope(const Eigen::Vector2d& uniform) const;
 
-  /// Without the part of a roughness, a standard deviation on the disk, that was added to its slopes.
-  SmoothLobe narrowed(double roughness) const;
+  /// Without the part of a roughness, standard deviations on the disk along u and v, that was added to its
+  /// slopes.
+  SmoothLobe narrowed(const Eigen::Vector2d& roughness) const;
 
   /// Roughness of a round lobe with the same mean square slope.
   double mean_alpha() const;

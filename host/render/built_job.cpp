@@ -23,13 +23,12 @@ constexpr double kGoldenRatio =
     0.6180339887498949;  // whose multiples, less whole numbers, fill [0, 1) evenly
 
 /// The normals of a map as a whole, and of its roughness.
-SmoothLobe lobe_of(const Surface& surface, double roughness) {
+SmoothLobe lobe_of(const Surface& surface, const Eigen::Vector2d& roughness_uv) {
   Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
   for (const Eigen::Vector2d& s : surface.normals()) sum += s * s.transpose() / (1 - s.squaredNorm());
-  return SmoothLobe(Distribution::beckmann,
-                    sum / static_cast<double>(surface.normals().size()) +
-                        roughness * roughness * Eigen::Matrix2d::Identity(),
-                    SmoothLobe::Masking::smith);
+  Eigen::Matrix2d moments = sum / static_cast<double>(surface.normals().size());
+  moments.diagonal() += roughness_uv.cwiseAbs2();
+  return SmoothLobe(Distribution::beckmann, moments, SmoothLobe::Masking::smith);
 }
 
 /// Several materials may share a surface, whose lines are said once.
@@ -165,7 +164,7 @@ double BuiltJob::least_roughness(std::size_t n) const {
   double least = 1;
   for (std::size_t m = 0; m < job_.scene.materials.size(); ++m)
     if (plan_.evaluator_of_material[m] == static_cast<int>(n))
-      least = std::min(least, job_.scene.materials[m].roughness);
+      least = std::min(least, job_.scene.materials[m].roughness_uv().minCoeff());
   return least;
 }
 
@@ -200,7 +199,7 @@ std::vector<SmoothLobe> BuiltJob::smooth_lobes() const {
       lobes.emplace_back(kUnusedAlpha);
     } else {
       lobes.push_back(material.glints ? SmoothLobe(*material.glints, material.glints->alpha)
-                                      : lobe_of(*surfaces_[evaluator], material.roughness));
+                                      : lobe_of(*surfaces_[evaluator], material.roughness_uv()));
     }
   }
   return lobes;
@@ -220,13 +219,16 @@ PixelSettings BuiltJob::pixels() const {
   pixels.subpixels = job_.image.subpixels;
   pixels.filter = PixelFilter(job_.image.filter);
   pixels.tolerance = kPixelOfPicture * job_.accuracy.tolerance;
+  pixels.lamp_parts = LampParts::of(job_.accuracy.lamp_parts, job_.accuracy.tolerance);
   // Lights gathered from all around are many directions a sample, and no one half vector.
   const bool may_fit = job_.image.filter.kind != FilterKind::subpixels && !plan_.gathers_light;
   pixels.turns = may_fit;
   for (std::size_t n = 0; n < job_.scene.materials.size(); ++n) {
     const int evaluator = plan_.evaluator_of_material[n];
-    const bool takes = evaluator >= 0 && surfaces_[evaluator] && plan_.evaluators[evaluator].asks_densities &&
-                       method_of(job_, plan_.evaluators[evaluator]).traits().first_order;
+    const std::optional<GlintsDescription>& glints = job_.scene.materials[n].glints;
+    const bool takes = evaluator >= 0 && plan_.evaluators[evaluator].asks_densities &&
+                       method_of(job_, plan_.evaluators[evaluator]).traits().first_order &&
+                       (!glints || (sees_scene() && glints->mapping == GlintsDescription::Mapping::uv));
     pixels.takes_first_order.push_back(takes);
     pixels.fits = pixels.fits || (may_fit && takes);
   }
@@ -300,21 +302,28 @@ PendingBlock::PendingBlock(TracedRows rows, const BuiltJob& built)
     : PendingBlock(std::move(rows), built, built.evaluators()) {}
 
 PendingBlock::PendingBlock(TracedRows rows, const BuiltJob& built, const std::vector<Evaluator*>& evaluators)
-    : rows_(std::move(rows)), parts_(built.plan().evaluators.size()) {
+    : rows_(std::move(rows)), built_(&built), evaluators_(evaluators) {
+  start();
+}
+
+void PendingBlock::start() {
+  const Plan& plan = built_->plan();
+  const std::size_t end = std::min(started_ + plan.queries_a_block, rows_.queries.size());
+  parts_ = std::vector<Part>(plan.evaluators.size());
   std::vector<std::vector<Query>> queries(parts_.size());
-  for (std::size_t n = 0; n < rows_.queries.size(); ++n) {
-    const int evaluator = built.plan().evaluator_of_material[rows_.queries[n].material];
-    parts_[evaluator].places.push_back(n);
-    queries[evaluator].push_back(rows_.queries[n].query);
+  for (; started_ < end; ++started_) {
+    const int evaluator = plan.evaluator_of_material[rows_.queries[started_].material];
+    parts_[evaluator].places.push_back(started_);
+    queries[evaluator].push_back(rows_.queries[started_].query);
   }
   for (std::size_t n = 0; n < parts_.size(); ++n) {
     if (queries[n].empty()) continue;
-    const auto material = static_cast<std::size_t>(built.plan().evaluators[n].first_material);
-    const std::optional<GlintsDescription>& glints = built.job().scene.materials[material].glints;
+    const auto material = static_cast<std::size_t>(plan.evaluators[n].first_material);
+    const std::optional<GlintsDescription>& glints = built_->job().scene.materials[material].glints;
     if (glints)
-      start_glints(&parts_[n], evaluators[n], glints->colors, queries[n]);
+      start_glints(&parts_[n], evaluators_[n], glints->colors, queries[n]);
     else
-      parts_[n].pending = evaluators[n]->start(queries[n]);
+      parts_[n].pending = evaluators_[n]->start(queries[n]);
   }
 }
 
@@ -340,13 +349,16 @@ void PendingBlock::tint(const Part& part, const std::vector<float>& densities) {
 
 std::vector<float> PendingBlock::wait() {
   std::vector<float> densities(rows_.queries.size());
-  for (Part& part : parts_) {
-    if (!part.pending) continue;
-    const std::vector<float> answers = part.pending->wait();
-    for (std::size_t n = 0; n < answers.size(); ++n) densities[part.places[n]] = answers[n];
-    if (!part.colors.empty()) tint(part, answers);
+  for (;;) {
+    for (Part& part : parts_) {
+      if (!part.pending) continue;
+      const std::vector<float> answers = part.pending->wait();
+      for (std::size_t n = 0; n < answers.size(); ++n) densities[part.places[n]] = answers[n];
+      if (!part.colors.empty()) tint(part, answers);
+    }
+    if (started_ == rows_.queries.size()) return densities;
+    start();
   }
-  return densities;
 }
 
 }  // namespace mica::host

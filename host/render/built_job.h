@@ -112,17 +112,22 @@ class PendingBlock {
   std::vector<float> wait();
 
  private:
+  /// Those of its queries that are on the device, by evaluator.
   struct Part {
     std::vector<std::size_t> places;
     std::unique_ptr<PendingDensities> pending;
     std::vector<Eigen::Vector3d> colors;  ///< that glints have
   };
+  void start();
   void start_glints(Part* part, Evaluator* evaluator, const std::vector<Color>& colors,
                     const std::vector<Query>& queries);
   void tint(const Part& part, const std::vector<float>& densities);
 
   TracedRows rows_;
+  const BuiltJob* built_;
+  std::vector<Evaluator*> evaluators_;
   std::vector<Part> parts_;  // by evaluator
+  std::size_t started_ = 0;  // of the rows' queries; no more at a time than the plan has room for
 };
 
 }  // namespace mica::host

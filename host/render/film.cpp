@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "host/render/luminance.h"
 #include "host/scene/aovs.h"
 
 namespace mica::host {
@@ -51,6 +52,27 @@ std::vector<Eigen::Vector3d> radiance_of(const TracedRows& rows, const std::vect
   return radiance;
 }
 
+std::vector<double> pixel_errors(const TracedRows& rows, const std::vector<float>& densities,
+                                 const std::vector<float>& errors) {
+  std::vector<double> of_densities(rows.radiance.size()), squares(rows.radiance.size());
+  for (std::size_t pixel = 0; pixel < squares.size(); ++pixel)
+    squares[pixel] = static_cast<double>(rows.doubt[pixel]) * static_cast<double>(rows.doubt[pixel]);
+  const double of_a_sample = 1.0 / (rows.lattice.subpixels * rows.lattice.subpixels);
+  for (std::size_t n = 0; n < densities.size(); ++n) {
+    const GlintQuery& glint = rows.queries[n];
+    if (glint.pixel == GlintQuery::kNone) continue;
+    const double weight =
+        luminance(glint.weight.cast<double>()) * (glint.sample == GlintQuery::kNone ? 1 : of_a_sample);
+    of_densities[glint.pixel] += weight * static_cast<double>(errors[n]);
+    const double missed =
+        std::hypot(static_cast<double>(glint.missed_by_footprint), static_cast<double>(glint.missed_by_lamp));
+    squares[glint.pixel] += std::pow(weight * static_cast<double>(densities[n]) * missed, 2);
+  }
+  for (std::size_t pixel = 0; pixel < squares.size(); ++pixel)
+    squares[pixel] = std::sqrt(squares[pixel] + of_densities[pixel] * of_densities[pixel]);
+  return squares;
+}
+
 Film::Film(int width, int height, const std::vector<std::string>& channels, int first_row) {
   image_.width = width;
   image_.height = height;
@@ -75,20 +97,19 @@ void Film::add(const TracedRows& rows, const std::vector<float>& densities,
   const std::size_t pixels = static_cast<std::size_t>(rows.row_count) * image_.width;
 
   const std::vector<Eigen::Vector3d> radiance = radiance_of(rows, densities, &repairs_);
-  std::vector<double> density_sum(pixels, 0.0), error_sum(pixels, 0.0);
-  for (std::size_t n = 0; n < densities.size(); ++n) {
-    const GlintQuery& glint = rows.queries[n];
-    if (glint.pixel == GlintQuery::kNone) continue;
-    density_sum[glint.pixel] += densities[n];
-    if (!errors.empty()) error_sum[glint.pixel] += errors[n];
-  }
+  std::vector<double> density_sum(pixels, 0.0);
+  for (std::size_t n = 0; n < densities.size(); ++n)
+    if (const GlintQuery& glint = rows.queries[n]; glint.pixel != GlintQuery::kNone)
+      density_sum[glint.pixel] += densities[n];
+  const std::vector<double> error =
+      errors.empty() ? std::vector<double>(pixels, 0.0) : pixel_errors(rows, densities, errors);
 
   write(first_pixel, "R", pixels, [&](std::size_t pixel, float* out) {
     Eigen::Map<Eigen::Vector3f>{out} = radiance[pixel].cast<float>();
   });
   for (const Aov& aov : aovs())
     write(first_pixel, aov.channel(0), pixels, [&](std::size_t pixel, float* out) {
-      aov.write({rows, pixel, density_sum[pixel], error_sum[pixel]}, out);
+      aov.write({rows, pixel, density_sum[pixel], error[pixel]}, out);
       for (std::size_t part = 0; part < aov.parts.size(); ++part)
         if (!std::isfinite(out[part])) out[part] = 0, ++repairs_.not_finite;
     });

@@ -26,6 +26,12 @@ std::vector<Eigen::Vector3d> sample_radiance_of(const TracedRows& rows, const st
 std::vector<Eigen::Vector3d> radiance_of(const TracedRows& rows, const std::vector<float>& densities,
                                          FilmRepairs* repairs);
 
+/// Estimates of pixels' errors, in luminance: of what their methods' densities may be off by, each of
+/// `errors`; of what footprints and lamps' parts stand for; and of what samples leave in doubt. Sums of
+/// samples count those in the pixel alone.
+std::vector<double> pixel_errors(const TracedRows& rows, const std::vector<float>& densities,
+                                 const std::vector<float>& errors);
+
 /// Collects traced rows and their densities into the channels of a plan.
 class Film {
  public:

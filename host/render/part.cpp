@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <set>
 #include <sstream>
@@ -45,12 +46,19 @@ std::size_t read_samples(const std::string& text, std::vector<AuditedSample>* sa
   return most;
 }
 
-/// The audited pixels of these rows: subpixels, the reference's L2, and what was shown and expected of each.
+/// The numbers of each audited pixel.
+template <typename Pixels>
+auto numbers_of(Pixels* pixels) {
+  return std::array{&pixels->shown, &pixels->expected, &pixels->own, &pixels->exact,
+                    &pixels->under_its_lamps};
+}
+
+/// The audited pixels of these rows: subpixels, the reference's L2, and all numbers of each.
 std::string write_pixels(const AuditedPixels& pixels) {
   std::string text = fmt::format("{} {:x}", pixels.subpixels, same_bits<std::uint64_t>(pixels.reference_l2));
   for (std::size_t n = 0; n < pixels.shown.size(); ++n)
-    text += fmt::format(" {:x} {:x}", same_bits<std::uint32_t>(pixels.shown[n]),
-                        same_bits<std::uint32_t>(pixels.expected[n]));
+    for (const std::vector<float>* numbers : numbers_of(&pixels))
+      text += fmt::format(" {:x}", same_bits<std::uint32_t>((*numbers)[n]));
   return text;
 }
 
@@ -62,11 +70,9 @@ void read_pixels(const std::string& text, AuditedPixels* pixels) {
   words >> subpixels >> std::hex >> reference_l2;
   pixels->subpixels = std::max(pixels->subpixels, subpixels);
   pixels->reference_l2 = std::max(pixels->reference_l2, same_bits<double>(reference_l2));
-  std::uint32_t expected = 0;
-  for (std::uint32_t shown = 0; words >> shown >> expected;) {
-    pixels->shown.push_back(same_bits<float>(shown));
-    pixels->expected.push_back(same_bits<float>(expected));
-  }
+  const auto all = numbers_of(pixels);
+  std::uint32_t number = 0;
+  for (std::size_t n = 0; words >> number; ++n) all[n % all.size()]->push_back(same_bits<float>(number));
 }
 
 bool is_part(const Image& image) {

@@ -51,10 +51,11 @@ std::vector<DrawnPixel> draw_pixels(const Image& image, int count, std::uint64_t
   return drawn;
 }
 
-/// Pixels as sums of small footprints.
+/// Pixels as sums of small footprints under lamps in many parts, or as the picture has them.
 class Reference {
  public:
-  explicit Reference(const BuiltJob& built) : built_(built), evaluators_(built.evaluators()) {
+  explicit Reference(const BuiltJob& built)
+      : built_(built), of_picture_(built.evaluators()), evaluators_(of_picture_) {
     for (std::size_t n = 0; n < evaluators_.size(); ++n) {
       made_.push_back(evaluators_[n] ? built.make_exact_evaluator(n) : nullptr);
       if (made_[n]) evaluators_[n] = made_[n].get();
@@ -69,9 +70,26 @@ class Reference {
   /// Luminance of the drawn pixels, scaled.
   std::vector<float> evaluate(const std::vector<DrawnPixel>& drawn, int subpixels) {
     pixels_.subpixels = subpixels;
+    pixels_.lamp_parts =
+        LampParts::of(kMostLampParts, kAgreementOfTolerance * built_.job().accuracy.tolerance);
+    return evaluate(drawn, pixels_, evaluators_);
+  }
+  std::vector<float> under_lamps_of_picture(const std::vector<DrawnPixel>& drawn, int subpixels) {
+    pixels_.subpixels = subpixels;
+    pixels_.lamp_parts = built_.scene().pixels().lamp_parts;
+    return evaluate(drawn, pixels_, evaluators_);
+  }
+  /// The picture's footprints before any are refined, by its own methods or by exact ones.
+  std::vector<float> of_picture(const std::vector<DrawnPixel>& drawn, bool exact) {
+    return evaluate(drawn, built_.scene().pixels(), exact ? evaluators_ : of_picture_);
+  }
+
+ private:
+  std::vector<float> evaluate(const std::vector<DrawnPixel>& drawn, const PixelSettings& pixels,
+                              const std::vector<Evaluator*>& evaluators) {
     std::vector<float> result;
     for (const DrawnPixel& pixel : drawn) {
-      PendingBlock block(built_.scene().trace_pixel(pixel.row, pixel.column, pixels_), built_, evaluators_);
+      PendingBlock block(built_.scene().trace_pixel(pixel.row, pixel.column, pixels), built_, evaluators);
       const std::vector<float> densities = block.wait();
       FilmRepairs repairs;  // the picture has counted its own
       result.push_back(static_cast<float>(pixel.scale *
@@ -80,12 +98,28 @@ class Reference {
     return result;
   }
 
- private:
   const BuiltJob& built_;
+  std::vector<Evaluator*> of_picture_;
   std::vector<std::unique_ptr<Evaluator>> made_;
   std::vector<Evaluator*> evaluators_;
   PixelSettings pixels_;
 };
+
+/// Lengths of the three differences that add up to that of what is shown from what is expected.
+void tell_parts(const AuditedPixels& pixels, PictureAudit* audit) {
+  double densities = 0, footprints = 0, lamps = 0, all = 0;
+  for (std::size_t n = 0; n < pixels.shown.size(); ++n) {
+    const double of_densities = double(pixels.own[n]) - double(pixels.exact[n]),
+                 of_lamps = double(pixels.under_its_lamps[n]) - double(pixels.expected[n]),
+                 difference = double(pixels.shown[n]) - double(pixels.expected[n]);
+    densities += of_densities * of_densities, lamps += of_lamps * of_lamps;
+    footprints += std::pow(difference - of_densities - of_lamps, 2);
+    all += double(pixels.expected[n]) * double(pixels.expected[n]);
+  }
+  if (!(all > 0)) return;
+  audit->of_densities = std::sqrt(densities / all), audit->of_lamps = std::sqrt(lamps / all);
+  audit->of_footprints = std::sqrt(footprints / all);
+}
 
 }  // namespace
 
@@ -111,6 +145,8 @@ AuditedPixels audit_pixels(const BuiltJob& built, const Image& image) {
         audited.reference_l2 <= kAgreementOfTolerance * job.accuracy.tolerance)
       break;
   }
+  audited.own = reference.of_picture(drawn, false), audited.exact = reference.of_picture(drawn, true);
+  audited.under_its_lamps = reference.under_lamps_of_picture(drawn, audited.subpixels);
   return audited;
 }
 
@@ -123,12 +159,16 @@ PictureAudit picture_audit(const AuditedPixels& pixels) {
   audit.upper_bound = error.upper_bound + pixels.reference_l2;
   audit.subpixels = pixels.subpixels;
   audit.reference_l2 = pixels.reference_l2;
+  tell_parts(pixels, &audit);
   return audit;
 }
 
 std::string describe(const PictureAudit& audit) {
-  return fmt::format("{} pixels, relative L2 {:.3g}, at most {:.3g} at 95%", audit.pixels, audit.relative_l2,
-                     audit.upper_bound);
+  return fmt::format(
+      "{} pixels, relative L2 {:.3g}, at most {:.3g} at 95%; of densities {:.3g}, footprints {:.3g}, lamps "
+      "{:.3g}",
+      audit.pixels, audit.relative_l2, audit.upper_bound, audit.of_densities, audit.of_footprints,
+      audit.of_lamps);
 }
 
 }  // namespace mica::host

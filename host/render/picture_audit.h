@@ -16,14 +16,19 @@ struct PictureAudit {
   double upper_bound = 0;   ///< of that of the whole picture, at 95% confidence, and of the reference's own
   int subpixels = 0;        ///< samples a pixel and axis of the reference
   double reference_l2 = 0;  ///< between it and one of half as many
+  /// What of `relative_l2` comes from the methods' densities, from what footprints and samples stand for, and
+  /// from the parts that lamps with an extent are cut into. Errors add up with their signs: so do these.
+  double of_densities = 0, of_footprints = 0, of_lamps = 0;
 };
 
 /// Pixels that were integrated again: luminance as drawn, and as it should be. Each is scaled so that all
 /// count as if they were as likely, whichever rows they are of.
 struct AuditedPixels {
   std::vector<float> shown, expected;
-  int subpixels = 0;        ///< as PictureAudit, of the finest
-  double reference_l2 = 0;  ///< as PictureAudit, the largest
+  std::vector<float> own, exact;  ///< of the picture's footprints alone: by its methods, and by `triangles`
+  std::vector<float> under_its_lamps;  ///< as `expected`, with lamps in the picture's parts
+  int subpixels = 0;                   ///< as PictureAudit, of the finest
+  double reference_l2 = 0;             ///< as PictureAudit, the largest
 };
 
 /// Integrates pixels again, drawn with probabilities that grow with their luminance: as sums of many small

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "host/scene/aovs.h"
+#include "host/scene/disk_cells.h"
 #include "host/scene/scene.h"
 #include "host/scene/shading.h"
 #include "host/surface/map_size.h"
@@ -129,6 +130,38 @@ std::set<std::string> used_materials(const SceneDescription& scene) {
   return used;
 }
 
+std::size_t samples_a_row(const Job& job) {
+  return static_cast<std::size_t>(job.image.width) * job.image.subpixels * job.image.subpixels;
+}
+
+/// Of lamps that are cut into parts, beside one a lamp.
+std::size_t queries_of_parts_a_row(const Job& job) {
+  const int parts = cells_of(LampParts::of(job.accuracy.lamp_parts, job.accuracy.tolerance).most_rings);
+  const auto cut = std::count_if(job.scene.lights.begin(), job.scene.lights.end(), widens_lobes);
+  return samples_a_row(job) * static_cast<std::size_t>(cut * (parts - 1));
+}
+
+/// Lobes that are longer one way are a matter of densities, by methods that take them.
+void check_long_lobes(const Job& job) {
+  for (const MaterialDescription& material : job.scene.materials) {
+    if (!material.long_roughness) continue;
+    const MethodTraits traits = job.methods.get(material.ndf).traits();
+    if (!traits.first_order || traits.lit_by_brdf)
+      throw UsageError(
+          fmt::format("material.{}.roughness: found 2 numbers, which ndf \"{}\" does not take; expected one, "
+                      "or ndf \"{}\"",
+                      material.name, material.ndf,
+                      fmt::join(job.methods.names([](const MethodTraits& t) {
+                        return t.jobs && t.first_order && !t.lit_by_brdf;
+                      }),
+                                "\" or \"")));
+    if (!job.scene.environments.empty() || job.image.max_bounces > 1)
+      throw UsageError(
+          fmt::format("material.{}.roughness: found 2 numbers beside light from all around; expected one",
+                      material.name));
+  }
+}
+
 }  // namespace
 
 bool can_audit_pixels(const Plan& plan) {
@@ -145,6 +178,7 @@ const MethodSettings& settings_of(const Job& job, const PlannedEvaluator& planne
 }
 
 Plan make_plan(const Job& job) {
+  check_long_lobes(job);
   Plan plan;
   plan.gathers_light = !job.scene.environments.empty() || job.image.max_bounces > 1;
   if (plan.gathers_light) plan.samples = job.image.samples, plan.max_bounces = job.image.max_bounces;
@@ -159,8 +193,7 @@ Plan make_plan(const Job& job) {
   if (job.audit.pixels > 0 && plan.gathers_light)
     plan.warnings.emplace_back("[audit] draws no pixels where light is gathered from all around");
   plan.queries_a_batch = kQueriesABatch;
-  const std::size_t queries_a_row = static_cast<std::size_t>(job.image.width) * job.image.subpixels *
-                                    job.image.subpixels * std::max<std::size_t>(job.scene.lights.size(), 1);
+  const std::size_t queries_a_row = samples_a_row(job) * std::max<std::size_t>(job.scene.lights.size(), 1);
   // Fewer would trace too much twice: what pixels see of the rows around a block.
   const std::size_t least_rows = std::min(16, job.image.height);
   plan.rows_a_block =
@@ -171,15 +204,16 @@ Plan make_plan(const Job& job) {
     block += 2 * std::min<std::size_t>(plan.queries_a_batch, static_cast<std::size_t>(plan.rows_a_block) *
                                                                  job.image.width * job.image.subpixels *
                                                                  job.image.subpixels * plan.samples);
+  plan.queries_a_block = block;
   for (PlannedEvaluator& evaluator : plan.evaluators) {
     plan_structure(job, &evaluator);
     plan.host_bytes += evaluator.host_bytes;
     plan.device_bytes += evaluator.device_bytes;
   }
   plan.device_bytes += kBatchesInFlight * block * (sizeof(device_types::mica_map_query) + sizeof(float));
-  plan.host_bytes +=
-      kBatchesInFlight * block *
-      (sizeof(GlintQuery) + sizeof(Query) + sizeof(device_types::mica_map_query) + sizeof(float));
+  const std::size_t of_parts = plan.rows_a_block * queries_of_parts_a_row(job);
+  plan.host_bytes += kBatchesInFlight * ((block + of_parts) * (sizeof(GlintQuery) + sizeof(float)) +
+                                         block * (sizeof(Query) + sizeof(device_types::mica_map_query)));
   plan.host_bytes += sizeof(float) * plan.channels.size() * job.image.width * job.image.height;
   return plan;
 }

@@ -40,6 +40,7 @@ struct Plan {
   Techniques techniques = Techniques::both;
   int rows_a_block = 0;                          ///< image rows that are traced and evaluated together
   std::size_t queries_a_batch = 0;               ///< of one kernel launch, at most
+  std::size_t queries_a_block = 0;               ///< of its rows that are on the device together, at most
   std::size_t host_bytes = 0, device_bytes = 0;  ///< of the whole, if every ray meets a glinting surface
   std::vector<std::string> warnings;             ///< what the job asks for and will not get
 };

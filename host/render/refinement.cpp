@@ -21,6 +21,8 @@ constexpr int kFinestBy = 4;  // along each axis
 constexpr double kChangeOfTolerance = 4, kWidth = 160;
 /// How much less than their doubt pixels change: a third of it, root mean square, where it was measured.
 constexpr double kChangeOfDoubt = 1.0 / 3;
+/// Of a change by samples twice as dense: how much more four times as dense ones would change.
+constexpr double kChangeOfHalf = 0.5;
 constexpr Lattice::Rings kNear{0, 1};  // what Scene::sample samples
 
 using Colors = std::vector<Eigen::Vector3d>;
@@ -117,15 +119,18 @@ double doubt(const Samples& samples, int row, int column) {
 
 Refinement::Refinement(const BuiltJob& built) : built_(built) {
   const PixelSettings& pixels = built.scene().pixels();
+  const std::vector<std::string>& channels = built.plan().channels;
+  const bool wants_errors = std::find(channels.begin(), channels.end(), "error.Y") != channels.end();
   // One sample a pixel says nothing of its error.
-  if (built.sees_scene() && pixels.fits && pixels.subpixels > 1)
+  tells_doubts_ = built.sees_scene() && pixels.subpixels > 1 && (pixels.fits || wants_errors);
+  if (tells_doubts_ && pixels.fits)
     most_change_ = kChangeOfTolerance * std::sqrt(built.job().image.width / kWidth) *
                    built.job().accuracy.tolerance * std::sqrt(mean_square(built));
 }
 
 std::size_t Refinement::refine(TracedRows* rows, const std::vector<float>& densities) {
   std::size_t queries = 0;
-  if (!(most_change_ > 0)) return queries;
+  if (!tells_doubts_) return queries;
   FilmRepairs repairs;  // the film counts them
   const Samples coarse{rows->lattice, sample_radiance_of(*rows, densities, &repairs)};
   const int width = rows->lattice.width;
@@ -137,7 +142,9 @@ std::size_t Refinement::refine(TracedRows* rows, const std::vector<float>& densi
   for (std::size_t pixel = 0; pixel < doubtful.size(); ++pixel) doubtful[pixel] = !rows->fitted[pixel];
   std::size_t count = 0;
   each_doubtful([&](std::size_t pixel, int row, int column) {
-    doubtful[pixel] = kChangeOfDoubt * doubt(coarse, row, column) > most_change_;
+    const double change = kChangeOfDoubt * doubt(coarse, row, column);
+    rows->doubt[pixel] = static_cast<float>(change);
+    doubtful[pixel] = most_change_ > 0 && change > most_change_;
     count += doubtful[pixel] ? 1 : 0;
   });
   if (count == 0) return queries;
@@ -158,7 +165,9 @@ std::size_t Refinement::refine(TracedRows* rows, const std::vector<float>& densi
       // What is further away has hardly any weight, and stays.
       const Eigen::Vector3d color =
           fine.sum(row, column, kNear) + coarse.sum(row, column, {kNear.farthest + 1, rows->lattice.margin});
-      doubtful[pixel] = std::abs(luminance(color - shown[pixel])) > most_change_;
+      const double change = std::abs(luminance(color - shown[pixel]));
+      rows->doubt[pixel] = static_cast<float>(kChangeOfHalf * change);
+      doubtful[pixel] = change > most_change_;
       count += doubtful[pixel] ? 1 : 0;
       shown[pixel] = color;
       rows->fitted[pixel] = 1;

@@ -19,7 +19,8 @@ class Refinement {
   /// At the frame of `built`, which must outlive it. Nothing is refined in pictures without fits.
   explicit Refinement(const BuiltJob& built);
 
-  /// Refines pixels of rows: they are as fitted ones then, with nothing but radiance.
+  /// Tells the doubt of pixels of rows, and refines them: they are as fitted ones then, with nothing but
+  /// radiance.
   /// @param densities in the order of their queries. @return how many queries that took.
   std::size_t refine(TracedRows* rows, const std::vector<float>& densities);
 
@@ -27,7 +28,8 @@ class Refinement {
 
  private:
   const BuiltJob& built_;
-  double most_change_ = 0;  ///< of a pixel's luminance
+  bool tells_doubts_ = false;  ///< of pixels of samples
+  double most_change_ = 0;     ///< of a pixel's luminance; 0: none is refined
   std::size_t refined_ = 0;
 };
 

@@ -4,12 +4,14 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "host/base/stopwatch.h"
 #include "host/render/built_job.h"
 #include "host/render/film.h"
 #include "host/render/gather_light.h"
+#include "host/render/luminance.h"
 #include "host/render/refinement.h"
 #include "mica/version.h"
 
@@ -28,6 +30,31 @@ void offer(const TracedRows& rows, const std::vector<float>& densities, const Pl
     sampler->offer(pixel, ordinal, glint.query, densities[n], plan.evaluator_of_material[glint.material],
                    glint.glints);
   }
+}
+
+/// What lamps with an extent show, and how far one Gaussian for each or for its parts is from that.
+class LampsError {
+ public:
+  void add(const TracedRows& rows, const std::vector<float>& densities) {
+    for (std::size_t n = 0; n < densities.size(); ++n) {
+      const GlintQuery& glint = rows.queries[n];
+      if (glint.pixel == GlintQuery::kNone) continue;
+      const double light = luminance(glint.weight.cast<double>()) * static_cast<double>(densities[n]);
+      all_ += light * light;
+      missed_ += std::pow(light * static_cast<double>(glint.missed_by_lamp), 2);
+    }
+  }
+  double relative_l2() const { return all_ > 0 ? std::sqrt(missed_ / all_) : 0; }
+
+ private:
+  double all_ = 0, missed_ = 0;
+};
+
+std::string describe_extent(double relative_l2) {
+  return fmt::format(
+      "lamps are wide beside the lobes that they light: glints are off by some {:.2g} (relative L2) for it; "
+      "accuracy.lamp_parts cuts them into parts",
+      relative_l2);
 }
 
 std::vector<float> estimate_errors(const BuiltJob& built, const TracedRows& rows,
@@ -50,6 +77,7 @@ void evaluate_rows(const BuiltJob& built, const RowRange& rows, const RenderProg
   const bool wants_errors = std::find(channels.begin(), channels.end(), "error.Y") != channels.end();
   const int end = rows.first + rows.count;
   Refinement refinement(built);
+  LampsError lamps;
   std::optional<PendingBlock> in_flight;
   for (int row = rows.first; row < end || in_flight; row += rows_a_block) {
     std::optional<PendingBlock> next;
@@ -72,12 +100,14 @@ void evaluate_rows(const BuiltJob& built, const RowRange& rows, const RenderProg
       take(in_flight->rows(), densities,
            wants_errors ? estimate_errors(built, in_flight->rows(), densities) : std::vector<float>());
       offer(in_flight->rows(), densities, built.plan(), built.job().image.width, sampler);
+      lamps.add(in_flight->rows(), densities);
       result->queries += densities.size();
       progress(in_flight->rows().first_row + in_flight->rows().row_count - rows.first, rows.count);
     }
     in_flight = std::move(next);
   }
   result->refined_pixels = refinement.refined_pixels();
+  result->lamps_error = lamps.relative_l2();
   result->seconds.render = total.seconds();
 }
 
@@ -141,6 +171,8 @@ RenderResult evaluate_frame(BuiltJob& built, int frame, const DeviceInfo& device
   result.precision_error = built.precision_error();
   result.surface_notes = built.notes();
   result.surface_warnings = built.warnings();
+  if (result.lamps_error > 2 * job.accuracy.tolerance)
+    result.surface_warnings.push_back(describe_extent(result.lamps_error));
   result.image.metadata = picture_identity(job, frame, built.inputs());
   result.image.metadata["mica:device"] = device.name;
   if (result.audit.samples) result.image.metadata["mica:audit"] = describe(result.audit);

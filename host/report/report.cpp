@@ -80,6 +80,7 @@ std::string render_json(const Job& job, const DeviceInfo& device, const RenderRe
                      {"total", s.total}};
   json["queries"] = result.queries;
   json["refined_pixels"] = result.refined_pixels;
+  json["lamps_error"] = result.lamps_error;
   json["device_seconds"] = result.device_seconds;
   json["queries_per_second"] = queries_per_second(result.queries, s.render);
   json["device_queries_per_second"] = queries_per_second(result.queries, result.device_seconds);
@@ -92,7 +93,10 @@ std::string render_json(const Job& job, const DeviceInfo& device, const RenderRe
                            {"relative_l2", result.picture_audit.relative_l2},
                            {"upper_bound", result.picture_audit.upper_bound},
                            {"reference_subpixels", result.picture_audit.subpixels},
-                           {"reference_l2", result.picture_audit.reference_l2}};
+                           {"reference_l2", result.picture_audit.reference_l2},
+                           {"of_densities", result.picture_audit.of_densities},
+                           {"of_footprints", result.picture_audit.of_footprints},
+                           {"of_lamps", result.picture_audit.of_lamps}};
   json["repairs"] = {{"not_finite", result.repairs.not_finite},
                      {"negative", result.repairs.negative},
                      {"replaced_answers", result.replaced_answers}};
@@ -138,9 +142,12 @@ std::string render_summary(const DeviceInfo& device, const RenderResult& result)
   if (result.picture_audit.pixels)
     text += fmt::format(
         "picture   {} pixels integrated again: relative L2 {:.2e}, at most {:.2e} at 95% confidence ({}x{} "
-        "footprints each, within {:.1e} of half as many a side)\n",
+        "footprints each, within {:.1e} of half as many a side); of densities {:.1e}, of footprints {:.1e}, "
+        "of "
+        "lamps' extent {:.1e}\n",
         result.picture_audit.pixels, result.picture_audit.relative_l2, result.picture_audit.upper_bound,
-        result.picture_audit.subpixels, result.picture_audit.subpixels, result.picture_audit.reference_l2);
+        result.picture_audit.subpixels, result.picture_audit.subpixels, result.picture_audit.reference_l2,
+        result.picture_audit.of_densities, result.picture_audit.of_footprints, result.picture_audit.of_lamps);
   return text;
 }
 

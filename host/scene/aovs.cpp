@@ -28,7 +28,7 @@ const std::vector<Aov>& aovs() {
       {"queries",
        {"Y"},
        [](const AovPixel& p, float* out) { *out = static_cast<float>(p.rows.query_count[p.pixel]); }},
-      {"error", {"Y"}, [](const AovPixel& p, float* out) { *out = a_query(p, p.error_sum); }}};
+      {"error", {"Y"}, [](const AovPixel& p, float* out) { *out = static_cast<float>(p.error); }}};
   return all;
 }
 

@@ -12,7 +12,8 @@ namespace mica::host {
 struct AovPixel {
   const TracedRows& rows;
   std::size_t pixel;
-  double density_sum, error_sum;  ///< sums over the pixel's queries
+  double density_sum;  ///< over the pixel's queries
+  double error;        ///< estimate of that of the pixel's luminance
 };
 
 /// A channel or a few of an image that say how its light came about.

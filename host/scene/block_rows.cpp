@@ -45,6 +45,7 @@ TracedRows empty_rows(int first_row, int row_count, int width) {
   rows.footprint.assign(pixels, Eigen::Vector3f::Zero());
   rows.normal.assign(pixels, Eigen::Vector3f::Zero());
   rows.query_count.assign(pixels, 0);
+  rows.doubt.assign(pixels, 0);
   return rows;
 }
 

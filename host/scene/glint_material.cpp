@@ -25,10 +25,6 @@ double factor(const std::optional<Texture>& texture, const Eigen::Vector2d& uv) 
   return texture ? std::clamp(texture->at(uv).x(), 0.0, 1.0) : 1;
 }
 
-Eigen::Vector2d wrapped(const Eigen::Vector2d& uv) {
-  return uv - kPeriod * (uv / kPeriod).array().floor().matrix();
-}
-
 /// Density in steps of four, each a grid of its own, of which the texture leaves a share: cells that followed
 /// it smoothly would be torn apart far from the origin.
 void set_density(double density, double factor, GlintPoint* point) {
@@ -39,6 +35,10 @@ void set_density(double density, double factor, GlintPoint* point) {
 }
 
 }  // namespace
+
+Eigen::Vector2d wrap_glints(const Eigen::Vector2d& uv) {
+  return uv - kPeriod * (uv / kPeriod).array().floor().matrix();
+}
 
 GlintMaterial::GlintMaterial(const MaterialDescription& material)
     : material_(material),
@@ -51,6 +51,10 @@ GlintMaterial::GlintMaterial(const MaterialDescription& material)
 
 Eigen::Vector2d GlintMaterial::alpha_at(const Eigen::Vector2d& uv) const {
   return (glints_.alpha * factor(alpha_, uv)).cwiseMax(kLeastRoughness);
+}
+
+double GlintMaterial::microroughness_at(const Eigen::Vector2d& uv) const {
+  return std::max(material_.roughness * factor(microroughness_, uv), kLeastRoughness);
 }
 
 Color GlintMaterial::tint(const Eigen::Vector2d& uv) const {
@@ -68,7 +72,7 @@ std::vector<GlintPlace> GlintMaterial::places(const CameraRay& ray, const Hit& h
                                               double sigma_pixels) const {
   GlintPlace place;
   const Eigen::Vector2d alpha = alpha_at(hit.uv);
-  place.microroughness = std::max(material_.roughness * factor(microroughness_, hit.uv), kLeastRoughness);
+  place.microroughness = microroughness_at(hit.uv);
   place.point.distribution = glints_.distribution;
   place.point.alpha_x = static_cast<float>(alpha.x()), place.point.alpha_y = static_cast<float>(alpha.y());
   place.point.stretch = static_cast<float>(glints_.stretch);
@@ -82,7 +86,7 @@ std::vector<GlintPlace> GlintMaterial::places(const CameraRay& ray, const Hit& h
     return places;
   }
   place.x = frame.x, place.y = frame.y;
-  place.footprint.mean_uv = wrapped(hit.uv.cwiseProduct(material_.repeat));
+  place.footprint.mean_uv = wrap_glints(hit.uv.cwiseProduct(material_.repeat));
   const Eigen::Matrix2d duv = material_.repeat.asDiagonal() * uv_differentials(ray, hit);
   place.footprint.cov_uv = footprint_covariance(duv, sigma_pixels);
   places.push_back(place);
@@ -119,7 +123,7 @@ void GlintMaterial::split_by_plane(const CameraRay& ray, const Hit& hit, const T
     place.x = (Eigen::Vector3d::Unit(across) - frame.z[across] * frame.z).normalized();
     place.y = frame.z.cross(place.x);
     const Eigen::Vector2d position(hit.position[across], hit.position[up]);
-    place.footprint.mean_uv = wrapped(position.cwiseProduct(material_.repeat));
+    place.footprint.mean_uv = wrap_glints(position.cwiseProduct(material_.repeat));
     Eigen::Matrix2d duv;
     duv << differentials.row(across) * material_.repeat.x(), differentials.row(up) * material_.repeat.y();
     place.footprint.cov_uv = footprint_covariance(duv, sigma_pixels);
@@ -128,17 +132,16 @@ void GlintMaterial::split_by_plane(const CameraRay& ray, const Hit& hit, const T
   places->erase(std::remove_if(places->begin(), places->end(), empty), places->end());
 }
 
-Color GlintMaterial::weight(const Hit& hit, const GlintPlace& place, const TangentFrame& frame,
-                            const LobesSeen& seen) const {
-  const Eigen::Vector2d alpha(place.point.alpha_x, place.point.alpha_y);
+Color GlintMaterial::weight(const Hit& hit, const TangentFrame& frame, const LobesSeen& seen) const {
+  const Eigen::Vector2d alpha = alpha_at(hit.uv).cast<float>().cast<double>();  // as queries have it
   const Eigen::Vector3d view = frame.to_local(seen.to_eye), light = frame.to_local(seen.to_light);
   const double G = glint_masking(glints_.distribution, glints_.masking, alpha, view, light);
   return seen.mirrored.cwiseProduct(tint(hit.uv)) * (G / (4 * view.z()));
 }
 
-double GlintMaterial::microroughness(const GlintPlace& place, const LobesSeen& seen) const {
+double GlintMaterial::microroughness(const Eigen::Vector2d& uv, const LobesSeen& seen) const {
   const double widened = seen.roughness * seen.roughness - material_.roughness * material_.roughness;
-  return std::min(std::sqrt(place.microroughness * place.microroughness + std::max(widened, 0.0)), 1.0);
+  return std::min(std::sqrt(std::pow(microroughness_at(uv), 2) + std::max(widened, 0.0)), 1.0);
 }
 
 }  // namespace mica::host

@@ -14,6 +14,9 @@
 
 namespace mica::host {
 
+/// Coordinates far out start again: further on, cells would be lost to rounding.
+Eigen::Vector2d wrap_glints(const Eigen::Vector2d& uv);
+
 /// A process of glints as one footprint sees it: where, and in which axes.
 struct GlintPlace {
   Footprint footprint;
@@ -38,9 +41,8 @@ class GlintMaterial {
 
   /// What D is multiplied with, besides the light's irradiance: Fresnel, masking and the texture of the
   /// reflection's colour.
-  /// @param place any of those of `hit`; @param seen by the eye from the light.
-  Color weight(const Hit& hit, const GlintPlace& place, const TangentFrame& frame,
-               const LobesSeen& seen) const;
+  /// @param seen by the eye from the light.
+  Color weight(const Hit& hit, const TangentFrame& frame, const LobesSeen& seen) const;
 
   /// Their lobe and colour at a place of the shape, where they are not told from each other.
   SmoothNormals from_afar(const Eigen::Vector2d& uv) const;
@@ -48,11 +50,15 @@ class GlintMaterial {
   /// Colour of the reflection by its texture.
   Color tint(const Eigen::Vector2d& uv) const;
 
-  /// The microroughness that a query asks with: the light's extent widens it.
-  double microroughness(const GlintPlace& place, const LobesSeen& seen) const;
+  /// The microroughness at a place of the shape that a query asks with: the light's extent widens it.
+  double microroughness(const Eigen::Vector2d& uv, const LobesSeen& seen) const;
+
+  /// Whether each pixel's processes lie in uv, one footprint for all.
+  bool has_one_place() const { return glints_.mapping == GlintsDescription::Mapping::uv; }
 
  private:
   Eigen::Vector2d alpha_at(const Eigen::Vector2d& uv) const;
+  double microroughness_at(const Eigen::Vector2d& uv) const;
   void split_by_stretch(const Eigen::Vector2d& uv, std::vector<GlintPlace>* places) const;
   void split_by_plane(const CameraRay& ray, const Hit& hit, const TangentFrame& frame, double sigma_pixels,
                       std::vector<GlintPlace>* places) const;

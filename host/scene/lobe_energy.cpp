@@ -20,15 +20,16 @@ constexpr double kLeastAlbedo = 0.05;  // no light grows by more than twenty tim
 
 /// Normals of equal weight on the disk, of the lobe blurred by the roughness. Those beyond its rim are lost.
 std::vector<Eigen::Vector3d> blurred_normals(const MaterialDescription& material, const SmoothLobe& lobe) {
-  const SmoothLobe facets = material.glints ? lobe : lobe.narrowed(material.roughness);
+  const SmoothLobe facets = material.glints ? lobe : lobe.narrowed(material.roughness_uv());
   std::vector<Eigen::Vector3d> normals;
   for (int n = 0; n < kNormals; ++n) {
     const Eigen::Vector2d slope = facets.slope(low_discrepancy_point(static_cast<std::uint32_t>(n), 0));
     // [Roberts 2018], the plastic number's sequence: independent of Sobol's.
     const double radius = std::sqrt(-2 * std::log1p(-std::fmod(0.5 + 0.7548776662466927 * n, 1.0))),
                  turn = 2 * kPi * std::fmod(0.5 + 0.5698402909980532 * n, 1.0);
-    const Eigen::Vector2d s = slope / std::sqrt(1 + slope.squaredNorm()) +
-                              material.roughness * radius * Eigen::Vector2d(std::cos(turn), std::sin(turn));
+    const Eigen::Vector2d s =
+        slope / std::sqrt(1 + slope.squaredNorm()) +
+        radius * material.roughness_uv().cwiseProduct(Eigen::Vector2d(std::cos(turn), std::sin(turn)));
     const double z2 = 1 - s.squaredNorm();
     if (z2 > 0) normals.emplace_back(s.x(), s.y(), std::sqrt(z2));
   }

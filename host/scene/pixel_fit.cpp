@@ -17,9 +17,14 @@ using Values = FitStencil::Values;
 constexpr double kMaxCondition = 50;  // of uv over the pixel; footprints of more than 100 are shortened
 constexpr double kWholePeriod = 0.5;  // sigma in periods from which on place says nothing of the normal
 
+/// The smaller variance of a lobe.
+double narrowest(const Eigen::Matrix2d& lobe_cov) {
+  return principal_axes_directly(lobe_cov).eigenvalues[0];
+}
+
 }  // namespace
 
-Probe probe_of(const SeenPoint& point) {
+Probe probe_of(const Viewer& viewer, const SeenPoint& point) {
   Probe probe;
   probe.radiance = point.radiance;
   if (!point.hit) return probe;
@@ -29,11 +34,15 @@ Probe probe_of(const SeenPoint& point) {
   probe.uv = point.uv, probe.duv = point.duv;
   probe.normal = point.frame.z;
   for (const SeenLamp& lamp : point.lamps)
-    probe.lamps.push_back({lamp.is_above, lamp.visible, lamp.half_vector, lamp.seen.roughness, lamp.lobe_cov,
-                           lamp.visible > 0
-                               ? Color(lamp.seen.glint_weight.cwiseProduct(lamp.incident.irradiance))
-                               : Color(Color::Zero()),
-                           lamp.weight_unshadowed});
+    probe.lamps.push_back(
+        {lamp.light, lamp.is_above, lamp.visible, lamp.half_vector, lamp.seen.roughness, lamp.lobe_cov,
+         lamp.visible > 0 ? Color(lamp.seen.glint_weight.cwiseProduct(lamp.incident.irradiance))
+                          : Color(Color::Zero()),
+         lamp.weight_unshadowed, lamp.missed});
+  if (const std::optional<GlintMaterial>& glints = viewer.shared->glints[point.material];
+      glints && glints->has_one_place())
+    for (const GlintPlace& place : glints->places(point.ray, *point.hit, point.frame, 0.5))
+      probe.glints.push_back(place.point);
   return probe;
 }
 
@@ -93,7 +102,7 @@ UvSteps repeating_steps(const FitStencil& stencil, const ProbesOfFit& probes) {
   for (std::size_t n = 0; n < stencil.size(); ++n) {
     const Eigen::Vector2d expected = middle.duv * stencil.offsets()[n];
     steps[n] = probes[n]->uv - middle.uv;
-    steps[n] -= (steps[n] - expected).array().round().matrix();
+    if (middle.glints.empty()) steps[n] -= (steps[n] - expected).array().round().matrix();
   }
   return steps;
 }
@@ -196,13 +205,17 @@ double PixelFit::third_order(const LampFit& lamp, const Frame& frame) const {
   const double weight = lamp.unshadowed.value;
   double square =
       stencil_.mean_product(lamp.unshadowed_residual, lamp.unshadowed_residual) / (weight * weight);
+  Values misses[2];
   for (int row = 0; row < 2; ++row) {
     const Values moved = inverse(row, 0) * u_residual_ + inverse(row, 1) * v_residual_;
     const Values turned = (row == 0 ? lamp.s_residual : lamp.t_residual) - turn(row, 0) * u_residual_ -
                           turn(row, 1) * v_residual_;
-    square += stencil_.mean_product(moved, moved) +
-              0.5 * stencil_.mean_product(turned, turned) / (lamp.roughness * lamp.roughness);
+    square += stencil_.mean_product(moved, moved);
+    misses[row] = turned;
   }
+  const Eigen::Matrix2d in_lobes = lamp.lobe().inverse();
+  for (int i = 0; i < 2; ++i)
+    for (int j = 0; j < 2; ++j) square += 0.5 * in_lobes(i, j) * stencil_.mean_product(misses[i], misses[j]);
   return square;
 }
 
@@ -225,7 +238,9 @@ bool PixelFit::query_of(const Gaussian& part, const Frame& frame, const LampFit&
   const Eigen::Matrix2d none = Eigen::Matrix2d::Zero();
   const Eigen::Vector2d moved = frame.axes * shift;
   const Eigen::Vector2d uv = Eigen::Vector2d(u_.mean(mean, none), v_.mean(mean, none)) + moved;
-  asked.footprint = {wrap(probes_[0]->uv + uv), footprint_covariance(frame.axes, 1)};
+  const bool repeats = probes_[0]->glints.empty();
+  asked.footprint = {repeats ? wrap(probes_[0]->uv + uv) : wrap_glints(probes_[0]->uv + uv),
+                     footprint_covariance(frame.axes, 1)};
   // Of the second order of h(u) half its mean: glints see the square of the Gaussian.
   const auto half_vector = [&](const Quadratic& h, int row) {
     return h.mean(mean, none) + frame.turn.row(row).dot(moved) + 0.25 * frame.bend.of_h[row].trace();
@@ -235,10 +250,9 @@ bool PixelFit::query_of(const Gaussian& part, const Frame& frame, const LampFit&
   asked.roughness = lamp.roughness;
   asked.half_vector_turn.setZero(), asked.lobe_cov = lamp.lobe_cov;
   const Eigen::Matrix2d across = frame.turn * frame.axes, spread = across * across.transpose();
-  if (spread.trace() > kLeastTurn * kLeastTurn * lamp.roughness * lamp.roughness) {
-    if (asked.footprint.cov_uv.trace() > kWholePeriod * kWholePeriod) {
-      const Eigen::Matrix2d round = lamp.roughness * lamp.roughness * Eigen::Matrix2d::Identity();
-      Eigen::Matrix2d lobe = lamp.lobe_cov.value_or(round) + spread;
+  if (spread.trace() > kLeastTurn * kLeastTurn * narrowest(lamp.lobe())) {
+    if (repeats && asked.footprint.cov_uv.trace() > kWholePeriod * kWholePeriod) {
+      Eigen::Matrix2d lobe = lamp.lobe() + spread;
       lobe(1, 0) = lobe(0, 1);
       asked.lobe_cov = lobe;
     } else {
@@ -255,7 +269,7 @@ bool PixelFit::ask(std::size_t lamp, const FilterSum& filter, const FitLimits& l
   const std::optional<Frame> whole =
       frame_of({{0, 0}, filter.variance() * Eigen::Matrix2d::Identity(), 1}, fitted);
   if (!whole) return false;
-  const double limit2 = std::pow(limits.relative_l2, 2) - third_order(fitted, *whole);
+  const double beyond = third_order(fitted, *whole), limit2 = std::pow(limits.relative_l2, 2) - beyond;
   if (!(limit2 >= 0)) return false;
 
   std::vector<Gaussian> parts;
@@ -273,10 +287,12 @@ bool PixelFit::ask(std::size_t lamp, const FilterSum& filter, const FitLimits& l
     parts.pop_back();
     const std::optional<Frame> frame = frame_of(part, fitted);
     if (!frame) return false;
-    const Eigen::Matrix2d missed = left_out(frame->bend, fitted.roughness);
+    const Eigen::Matrix2d missed = left_out(frame->bend, fitted.lobe());
     if (missed.trace() <= limit2) {
       GlintQuery query;
-      query.light = static_cast<std::uint32_t>(lamp);
+      query.light = probes_[0]->lamps[lamp].light;
+      query.missed_by_lamp = static_cast<float>(probes_[0]->lamps[lamp].missed);
+      query.missed_by_footprint = static_cast<float>(std::sqrt(missed.trace() + beyond));
       if (!query_of(part, *frame, fitted, &query)) return false;
       asked.push_back(query);
       continue;
@@ -294,7 +310,15 @@ bool PixelFit::ask(std::size_t lamp, const FilterSum& filter, const FitLimits& l
       parts.push_back(
           {part.mean + split.parts.offsets_pixels[n] * axis, cov, part.weight * split.parts.weights[n]});
   }
-  queries->insert(queries->end(), asked.begin(), asked.end());
+  if (probes_[0]->glints.empty()) {
+    queries->insert(queries->end(), asked.begin(), asked.end());
+  } else {
+    for (GlintQuery& query : asked)
+      for (const GlintPoint& process : probes_[0]->glints) {
+        query.glints = process;
+        queries->push_back(query);
+      }
+  }
   return true;
 }
 

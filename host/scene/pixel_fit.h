@@ -23,13 +23,15 @@ constexpr double kMostForeshortening = 0.1;
 struct Probe {
   static constexpr std::uint64_t kNothing = ~std::uint64_t{0};
   struct Lamp {
-    bool is_above = false;  ///< as SeenLamp
-    double visible = 0;     ///< as SeenLamp
+    std::uint32_t light = 0;  ///< as SeenLamp
+    bool is_above = false;    ///< as SeenLamp
+    double visible = 0;       ///< as SeenLamp
     Eigen::Vector2d half_vector{0, 0};
     double roughness = 0;
     std::optional<Eigen::Matrix2d> lobe_cov;  ///< as SeenLamp
     Color weight = Color::Zero();             ///< radiance per unit of D, of what is visible
     double weight_unshadowed = 0;             ///< as SeenLamp
+    double missed = 0;                        ///< as SeenLamp
   };
   std::uint64_t surface = kNothing;  ///< the same number on a shape's part
   std::uint32_t material = 0;
@@ -39,8 +41,9 @@ struct Probe {
   Eigen::Vector3d normal{0, 0, 0};
   Color radiance = Color::Zero();
   std::vector<Lamp> lamps;
+  std::vector<GlintPoint> glints;  ///< its processes, of materials without a map: their uv do not repeat
 };
-Probe probe_of(const SeenPoint& point);
+Probe probe_of(const Viewer& viewer, const SeenPoint& point);
 
 /// c + g x + x' q x / 2 about a pixel's centre.
 struct Quadratic {
@@ -94,8 +97,8 @@ struct FitLimits {
 using ProbesOfFit = std::array<const Probe*, FitStencil::kMost>;
 using UvSteps = std::array<Eigen::Vector2d, FitStencil::kMost>;
 
-/// The change of uv from the centre to each place. The map repeats: of all that a place may mean the one
-/// nearest to where the centre's uv lead.
+/// The change of uv from the centre to each place. Maps repeat: of all that a place may mean the one nearest
+/// to where the centre's uv lead.
 UvSteps repeating_steps(const FitStencil& stencil, const ProbesOfFit& probes);
 
 /// A pixel whose filter lies on one surface, by a least-squares fit of second order to what its stencil
@@ -133,6 +136,10 @@ class PixelFit {
     double roughness;
     std::optional<Eigen::Matrix2d> lobe_cov;
     Values s_residual, t_residual, unshadowed_residual;
+
+    Eigen::Matrix2d lobe() const {
+      return lobe_cov.value_or(roughness * roughness * Eigen::Matrix2d::Identity());
+    }
   };
   /// A part of the filter to the first order, in the coordinates in which it is round.
   struct Frame {

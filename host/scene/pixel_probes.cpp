@@ -40,10 +40,12 @@ bool any_near(int down, int right, int reach, const IsSo& is_so) {
 
 }  // namespace
 
-PixelProbes::PixelProbes(const Viewer& viewer, const ProbedPixels& pixels, int reach)
+PixelProbes::PixelProbes(const Viewer& viewer, const ProbedPixels& pixels, int reach,
+                         const LampParts& lamp_parts)
     : viewer_(viewer),
       pixels_(pixels),
       reach_(reach),
+      lamp_parts_(lamp_parts),
       all_{room_for(pixels, reach + kRing, 1), room_for(pixels, reach + kRing, 0)} {
   for (const LightDescription& light : viewer.lights) has_extent_.push_back(has_extent(light));
   everywhere(pixels, reach + kRing,
@@ -61,8 +63,9 @@ Probe PixelProbes::trace(int down, int right, int shadow_rays_side) const {
   const auto random = [&](std::uint64_t n) {
     return random_unit(key, kProbes, 2 * n + static_cast<std::uint64_t>(down & 1));
   };
-  return probe_of(viewer_.look(pixels_.origin_column + 0.5 * right, pixels_.origin_row + 0.5 * down,
-                               light_samples({random(0), random(1)}, shadow_rays_side)));
+  return probe_of(viewer_,
+                  viewer_.look(pixels_.origin_column + 0.5 * right, pixels_.origin_row + 0.5 * down,
+                               {light_samples({random(0), random(1)}, shadow_rays_side), lamp_parts_}));
 }
 
 bool PixelProbes::is_in_penumbra(const Quincunx& probes, int down, int right) const {
@@ -70,8 +73,10 @@ bool PixelProbes::is_in_penumbra(const Quincunx& probes, int down, int right) co
   return any_near(down, right, 2 * kRing, [&](int y, int x) {
     const Probe& near = at(probes, y, x);
     if (near.surface != middle.surface || near.faces_eye != middle.faces_eye) return false;
+    if (!alike(near.lamps, middle.lamps)) return true;
     for (std::size_t lamp = 0; lamp < near.lamps.size(); ++lamp) {
-      if (!has_extent_[lamp] || !near.lamps[lamp].is_above || !middle.lamps[lamp].is_above) continue;
+      if (!has_extent_[near.lamps[lamp].light] || !near.lamps[lamp].is_above || !middle.lamps[lamp].is_above)
+        continue;
       const double visible = near.lamps[lamp].visible;
       if (visible != middle.lamps[lamp].visible || (visible > 0 && visible < 1)) return true;
     }
@@ -84,10 +89,11 @@ bool PixelProbes::agree(int row, int column) const {
   return !any_near(2 * row + 1, 2 * column + 1, 2 * reach_ + 1, [&](int down, int right) {
     const Probe& probe = at(down, right);
     if (probe.surface != middle.surface || probe.faces_eye != middle.faces_eye) return true;
+    if (!alike(probe.lamps, middle.lamps)) return true;
     for (std::size_t n = 0; n < probe.lamps.size(); ++n) {
       const Probe::Lamp &lamp = probe.lamps[n], &of_middle = middle.lamps[n];
       if (lamp.is_above != of_middle.is_above) return true;
-      if (!has_extent_[n] && lamp.visible != of_middle.visible) return true;
+      if (!has_extent_[lamp.light] && lamp.visible != of_middle.visible) return true;
     }
     return false;
   });

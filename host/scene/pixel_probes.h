@@ -18,7 +18,7 @@ struct ProbedPixels {
 class PixelProbes {
  public:
   /// @param viewer must outlive it. @param reach how many pixels around those asked for are looked at.
-  PixelProbes(const Viewer& viewer, const ProbedPixels& pixels, int reach);
+  PixelProbes(const Viewer& viewer, const ProbedPixels& pixels, int reach, const LampParts& lamp_parts);
 
   const Probe& center(int row, int column) const { return at(2 * row + 1, 2 * column + 1); }
 
@@ -45,6 +45,7 @@ class PixelProbes {
   const Viewer& viewer_;
   const ProbedPixels pixels_;
   const int reach_;
+  const LampParts lamp_parts_;
   std::vector<bool> has_extent_;  // by lamp
   Quincunx all_;
 };

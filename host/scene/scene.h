@@ -8,6 +8,7 @@
 #include "host/base/glints.h"
 #include "host/base/query.h"
 #include "host/scene/description.h"
+#include "host/scene/disk_cells.h"
 #include "host/scene/environment.h"
 #include "host/scene/geometry.h"
 #include "host/scene/lattice.h"
@@ -28,6 +29,9 @@ struct GlintQuery {
   std::uint32_t light = 0;       ///< index into Scene::lights
   Eigen::Vector3f weight = Eigen::Vector3f::Zero();  ///< radiance into the pixel or sample per unit of D
   GlintPoint glints;                                 ///< for the evaluator "grid"; others do not mind it
+  /// Relative L2 of what the footprint stands for, and of the lamp's part as one Gaussian: over glints
+  /// anywhere.
+  float missed_by_footprint = 0, missed_by_lamp = 0;
 };
 
 /// What tracing a block of image rows found. Rows count from the top of the image.
@@ -50,6 +54,7 @@ struct TracedRows {
   std::vector<Eigen::Vector3f> footprint;  ///< cuu, cuv, cvv in uv^2
   std::vector<Eigen::Vector3f> normal;     ///< geometric normal towards the camera, world space
   std::vector<std::uint16_t> query_count;
+  std::vector<float> doubt;     ///< a pixel: by how much of luminance its samples may be off; see Refinement
   std::vector<float> coverage;  ///< share of shapes in it; empty where nobody asked
 };
 
@@ -65,6 +70,7 @@ struct PixelSettings {
   std::vector<bool> takes_first_order;  ///< a material: queries may turn, and have lobes that are not round
   bool turns = true;                    ///< half vectors do, over samples; fits always turn them
   double tolerance = 0.01;              ///< of fits, see FitLimits::relative_l2
+  LampParts lamp_parts;
 };
 
 /// What a scene hands out for the lights that are gathered by sampling directions.

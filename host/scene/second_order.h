@@ -23,6 +23,7 @@ Eigen::Vector2d best_shift(const SecondOrder& bend, const Eigen::Vector2d& log_w
 /// 2 less what is linear in it: 3/4 |T|^2 over the square of a Gaussian. Half vectors miss by of_h(y, y) / 2
 /// less its mean, in lobes, of which the square of two Gaussians' difference has half: |of_h|^2 / 16. The
 /// light's factor has twice that.
-Eigen::Matrix2d left_out(const SecondOrder& bend, double roughness);
+/// @param lobe_cov on the disk.
+Eigen::Matrix2d left_out(const SecondOrder& bend, const Eigen::Matrix2d& lobe_cov);
 
 }  // namespace mica::host

@@ -7,6 +7,7 @@
 
 #include "host/base/constants.h"
 #include "host/microfacet/horizon.h"
+#include "host/scene/disk_cells.h"
 
 namespace mica::host {
 namespace {
@@ -97,6 +98,53 @@ struct DiskFrom {
   }
 };
 
+/// A part of a light's disk, as bright as the cell is large.
+struct IlluminatePart {
+  const Eigen::Vector3d& position;
+  const Illumination& whole;
+  const DiskCell& cell;
+
+  Illumination operator()(const PointLight&) const { return whole; }
+  Illumination operator()(const DirectionalLight& light) const {
+    return of_cone(std::sin(light.angular_radius));
+  }
+  Illumination operator()(const SphereLight& light) const {
+    return of_cone(light.radius / (light.position - position).norm());
+  }
+  Illumination operator()(const DiskLight& light) const {
+    const DiskFrom::Disk disk = DiskFrom{position}(light);
+    const Eigen::Vector3d to_part = disk.middle + cell.mean.x() * disk.x + cell.mean.y() * disk.y;
+    Illumination part = whole;
+    part.distance = to_part.norm();
+    part.direction = to_part / part.distance;
+    const double facing = std::max(-part.direction.dot(light.direction.normalized()), 0.0);
+    part.irradiance = cell.share * facing / (part.distance * part.distance) * light.intensity;
+    Eigen::Matrix<double, 3, 2> moves;
+    moves << disk.x, disk.y;
+    spread(across(part.direction) * moves / part.distance, &part);
+    return part;
+  }
+
+ private:
+  /// A sphere's points are alike in the sines of their angles to its middle.
+  Illumination of_cone(double sine) const {
+    const Eigen::Vector3d &z = whole.direction, x = z.unitOrthogonal(), y = z.cross(x);
+    const double cosine = std::sqrt(std::max(1 - sine * sine * cell.mean.squaredNorm(), kMinCosine));
+    Illumination part = whole;
+    part.direction = cosine * z + sine * (cell.mean.x() * x + cell.mean.y() * y);
+    part.irradiance = cell.share / cosine * whole.irradiance;
+    Eigen::Matrix<double, 3, 2> moves;
+    moves << x, y;
+    spread(sine * moves - sine * sine / cosine * z * cell.mean.transpose(), &part);
+    return part;
+  }
+  /// @param moves the change of the direction over the disk.
+  void spread(const Eigen::Matrix<double, 3, 2>& moves, Illumination* part) const {
+    part->cov = moves * cell.cov * moves.transpose();
+    part->variance = part->cov.trace() / 2;
+  }
+};
+
 }  // namespace
 
 TangentFrame tangent_frame(const Hit& hit, const Eigen::Vector3d& to_eye) {
@@ -118,10 +166,29 @@ Illumination illuminate(const LightDescription& light, const Eigen::Vector3d& po
   return std::visit(Illuminate{position}, light);
 }
 
+std::vector<Illumination> illuminate_by_parts(const LightDescription& light, const Eigen::Vector3d& position,
+                                              const Illumination& whole, int rings) {
+  if (rings == 0 || !(whole.variance > 0)) return {whole};
+  std::vector<Illumination> parts;
+  double arrived = 0, expected = whole.irradiance.sum();
+  for (const DiskCell& cell : disk_cells(rings)) {
+    const Illumination& part = parts.emplace_back(std::visit(IlluminatePart{position, whole, cell}, light));
+    arrived += part.irradiance.sum() * part.direction.dot(whole.direction);
+  }
+  if (!(arrived > 0)) return {whole};
+  for (Illumination& part : parts) part.irradiance *= expected / arrived;
+  return parts;
+}
+
 bool has_extent(const LightDescription& light) {
   if (const auto* sphere = std::get_if<SphereLight>(&light)) return sphere->radius > 0;
   if (const auto* disk = std::get_if<DiskLight>(&light)) return disk->radius > 0;
   return false;
+}
+
+bool widens_lobes(const LightDescription& light) {
+  const auto* directional = std::get_if<DirectionalLight>(&light);
+  return directional ? directional->angular_radius > 0 : has_extent(light);
 }
 
 ShadowRays::ShadowRays(const LightDescription& light, const Eigen::Vector3d& position)

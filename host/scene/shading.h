@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "host/scene/description.h"
 #include "host/scene/hit.h"
@@ -35,8 +36,18 @@ struct Illumination {
 };
 Illumination illuminate(const LightDescription& light, const Eigen::Vector3d& position);
 
+/// The same light cut into `rings` about its middle, see disk_cells, each part with a direction and a spread
+/// of its own. Their sum is as bright as the whole on a surface that faces it. Lights without extent are one
+/// part.
+/// @param whole as illuminate has it, with an irradiance above 0.
+std::vector<Illumination> illuminate_by_parts(const LightDescription& light, const Eigen::Vector3d& position,
+                                              const Illumination& whole, int rings);
+
 /// Whether a light is more than a point or a direction, so that its shadows have penumbras.
 bool has_extent(const LightDescription& light);
+
+/// Whether its extent widens lobes: of a directional light an angular radius does, too.
+bool widens_lobes(const LightDescription& light);
 
 /// The shadow rays from a place to a light.
 class ShadowRays {

@@ -129,7 +129,7 @@ class BlockTracer {
 void BlockTracer::fit_pixels() {
   probes_.emplace(viewer_,
                   ProbedPixels{first_seen_, end_seen_, 0, width_, first_row_, first_column_, image_width_},
-                  reach_);
+                  reach_, pixels_.lamp_parts);
   tbb::parallel_for(first_seen_, end_seen_, [&](int row) {
     for (int column = 0; column < width_; ++column) fits_.at(row, column) = fit(row, column);
   });
@@ -197,7 +197,8 @@ void BlockTracer::write_fits(int row, RowQueries* queries) {
       query.pixel = static_cast<std::uint32_t>(pixel);
       if (query.weight.maxCoeff() > 0) queries->glints.push_back(query);
     }
-    rows_.query_count[pixel] = static_cast<std::uint16_t>(fitted->queries.size());
+    rows_.query_count[pixel] =
+        static_cast<std::uint16_t>(std::min<std::size_t>(fitted->queries.size(), 65535));
   }
 }
 
@@ -219,7 +220,7 @@ void BlockTracer::sample_cell(int row, int column, std::uint32_t first_sample, R
     }
     points.push_back(viewer_.look(first_column_ + column + (right + 0.5) / n,
                                   first_row_ + row + (down + 0.5) / n,
-                                  {light_sample(key(row, column), k, n)}));
+                                  {{light_sample(key(row, column), k, n)}, pixels_.lamp_parts}));
   }
   const std::vector<std::vector<Eigen::Matrix2d>> turns = turns_of(points);
   // A pixel that was fitted has queries of its own: samples in it are there for its neighbours.
@@ -252,7 +253,8 @@ std::optional<Eigen::Matrix2d> half_vector_change(const std::vector<SeenPoint>& 
   const SeenPoint& middle = points[static_cast<std::size_t>(k)];
   const auto is_alike = [&](const SeenPoint& point) {
     return point.hit && point.faces_eye && point.hit->shape == middle.hit->shape &&
-           point.hit->part == middle.hit->part && point.lamps[lamp].visible > 0;
+           point.hit->part == middle.hit->part && alike(point.lamps, middle.lamps) &&
+           point.lamps[lamp].visible > 0;
   };
   const int place[2] = {k % n, k / n}, stride[2] = {1, n};
   Eigen::Matrix2d change;

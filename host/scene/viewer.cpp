@@ -1,23 +1,32 @@
 #include "host/scene/viewer.h"
 
+#include "host/base/symmetric_matrix.h"
 #include "host/microfacet/horizon.h"
 #include "host/scene/bounce_fresnel.h"
 #include "host/scene/coat_crossing.h"
+#include "host/scene/disk_cells.h"
 #include "host/scene/footprint.h"
 #include "host/scene/wrap.h"
 
 namespace mica::host {
 namespace {
 
-/// Covariance on the disk of a lobe that half vectors of some covariance widen; none where it is round.
-std::optional<Eigen::Matrix2d> long_lobe(double roughness, const TangentFrame& frame,
+/// A covariance of half vectors on a point's disk.
+Eigen::Matrix2d on_disk(const TangentFrame& frame, const Eigen::Matrix3d& half_vector_cov) {
+  Eigen::Matrix<double, 2, 3> axes;
+  axes << frame.x.transpose(), frame.y.transpose();
+  Eigen::Matrix2d cov = axes * half_vector_cov * axes.transpose();
+  cov(1, 0) = cov(0, 1);
+  return cov;
+}
+
+/// Covariance on the disk of a material's lobe that half vectors of some covariance widen; none where it is
+/// round.
+std::optional<Eigen::Matrix2d> long_lobe(const MaterialDescription& material, const TangentFrame& frame,
                                          const Eigen::Matrix3d& half_vector_cov) {
   constexpr double round = 0.02;  // half the difference of both variances, of their mean
-  Eigen::Matrix<double, 2, 3> on_disk;
-  on_disk << frame.x.transpose(), frame.y.transpose();
-  Eigen::Matrix2d cov = on_disk * half_vector_cov * on_disk.transpose();
-  cov.diagonal().array() += roughness * roughness;
-  cov(1, 0) = cov(0, 1);
+  Eigen::Matrix2d cov = on_disk(frame, half_vector_cov);
+  cov.diagonal() += material.roughness_uv().cwiseAbs2();
   const double mean = cov.trace() / 2;
   const double difference = std::hypot(cov(0, 0) - mean, cov(0, 1));
   if (!(difference > round * mean && mean + difference < 1)) return std::nullopt;
@@ -41,38 +50,56 @@ StaticScene::StaticScene(const SceneDescription& description)
     if (materials[n].glints && materials[n].id) glints[n].emplace(materials[n]);
 }
 
-SeenLamp Viewer::see(const LightDescription& light, const SeenPoint& point,
-                     const std::vector<Eigen::Vector2d>& light_samples) const {
-  const TangentFrame& frame = point.frame;
-  SeenLamp lamp;
-  lamp.incident = illuminate(light, point.hit->position);
-  if (!(lamp.incident.irradiance.maxCoeff() > 0)) return lamp;
-  const Eigen::Vector3d& direction = lamp.incident.direction;
-  if (direction.dot(frame.z) < kMinCosine || direction.dot(frame.face_normal) < kMinCosine) return lamp;
-  const std::size_t rays = has_extent(light) ? light_samples.size() : 1;
+bool Viewer::is_above(const Illumination& incident, const SeenPoint& point) const {
+  return incident.irradiance.maxCoeff() > 0 && incident.direction.dot(point.frame.z) >= kMinCosine &&
+         incident.direction.dot(point.frame.face_normal) >= kMinCosine;
+}
+
+double Viewer::visible_share(const LightDescription& light, const SeenPoint& point,
+                             const std::vector<Eigen::Vector2d>& shadow_rays) const {
+  const std::size_t rays = has_extent(light) ? shadow_rays.size() : 1;
   const ShadowRays to_light(light, point.hit->position);
   std::vector<ShadowRay> above;
   above.reserve(rays);
   for (std::size_t n = 0; n < rays; ++n) {
-    const ShadowRay ray = to_light.to(light_samples[n]);
-    if (ray.direction.dot(frame.face_normal) >= kMinCosine) above.push_back(ray);
+    const ShadowRay ray = to_light.to(shadow_rays[n]);
+    if (ray.direction.dot(point.frame.face_normal) >= kMinCosine) above.push_back(ray);
   }
-  const std::size_t arrived = shared->geometry.count_open(*point.hit, above);
+  return static_cast<double>(shared->geometry.count_open(*point.hit, above)) / static_cast<double>(rays);
+}
+
+/// What of a lamp, or of a part of it, a share of which no shadow hides, is seen in a point.
+SeenLamp Viewer::see(const Illumination& incident, double visible, const SeenPoint& point) const {
+  SeenLamp lamp;
+  lamp.incident = incident;
+  if (!is_above(incident, point)) return lamp;
+  const TangentFrame& frame = point.frame;
   lamp.is_above = true;
-  lamp.visible = static_cast<double>(arrived) / static_cast<double>(rays);
-  const Color unshadowed = lamp.incident.irradiance;
-  lamp.incident.irradiance *= lamp.visible;
+  lamp.visible = visible;
+  lamp.incident.irradiance *= visible;
   lamp.seen = see_lobes((*layers)[point.material], frame.z, point.to_eye, lamp.incident);
   lamp.half_vector = frame.on_disk(lamp.seen.half_vector);
-  lamp.lobe_cov = long_lobe(shared->materials[point.material].roughness, frame, lamp.seen.half_vector_cov);
+  lamp.lobe_cov = long_lobe(shared->materials[point.material], frame, lamp.seen.half_vector_cov);
   const Color regained = (*layers)[point.material].regained(frame.to_local(lamp.seen.to_eye));
   lamp.seen.mirrored = lamp.seen.mirrored.cwiseProduct(regained);
   lamp.seen.glint_weight = lamp.seen.glint_weight.cwiseProduct(regained);
-  lamp.weight_unshadowed = lamp.seen.glint_weight.dot(unshadowed);
+  if (const std::optional<GlintMaterial>& glints = shared->glints[point.material]) {
+    lamp.seen.glint_weight = glints->weight(*point.hit, frame, lamp.seen);
+    lamp.seen.roughness = glints->microroughness(point.hit->uv, lamp.seen);
+    lamp.lobe_cov.reset();
+  }
+  lamp.weight_unshadowed = lamp.seen.glint_weight.dot(incident.irradiance);
   return lamp;
 }
 
-SeenPoint Viewer::look(double x, double y, const std::vector<Eigen::Vector2d>& light_samples) const {
+/// Radius of a lamp's image on the disk of the half vectors, in standard deviations of the narrowest lobe.
+double Viewer::lobes_across(const SeenLamp& lamp, const SeenPoint& point) const {
+  const MaterialDescription& material = shared->materials[point.material];
+  return 2 * std::sqrt(principal_axes(on_disk(point.frame, lamp.seen.half_vector_cov)).eigenvalues[1]) /
+         material.roughness_uv().minCoeff();
+}
+
+SeenPoint Viewer::look(double x, double y, const LampSampling& sampling) const {
   SeenPoint point;
   point.ray = camera.ray(x, y);
   point.hit = shared->geometry.intersect({point.ray.origin, point.ray.direction});
@@ -88,14 +115,33 @@ SeenPoint Viewer::look(double x, double y, const std::vector<Eigen::Vector2d>& l
   point.uv = hit.uv.cwiseProduct(repeat);
   point.duv = repeat.asDiagonal() * uv_differentials(point.ray, hit);
   point.faces_eye = point.frame.face_normal.dot(point.to_eye) >= kMinCosine;
-  if (point.faces_eye) see_lamps(light_samples, &point);
+  if (point.faces_eye) see_lamps(sampling, &point);
   return point;
 }
 
-void Viewer::see_lamps(const std::vector<Eigen::Vector2d>& light_samples, SeenPoint* point) const {
-  for (const LightDescription& light : lights) {
-    const SeenLamp& lamp = point->lamps.emplace_back(see(light, *point, light_samples));
-    if (lamp.visible > 0) point->radiance += lamp.seen.smooth.cwiseProduct(lamp.incident.irradiance);
+void Viewer::see_lamps(const LampSampling& sampling, SeenPoint* point) const {
+  for (std::size_t n = 0; n < lights.size(); ++n) {
+    const Illumination whole = illuminate(lights[n], point->hit->position);
+    const double visible =
+        is_above(whole, *point) ? visible_share(lights[n], *point, sampling.shadow_rays) : 0;
+    std::vector<SeenLamp> parts = {see(whole, visible, *point)};
+    double missed = 0;
+    if (parts[0].is_above && whole.variance > 0) {
+      const double lobes = lobes_across(parts[0], *point);
+      const int rings = sampling.parts.rings(lobes);
+      missed = error_of_cells(lobes, rings);
+      if (rings > 0) {
+        parts.clear();
+        for (const Illumination& part : illuminate_by_parts(lights[n], point->hit->position, whole, rings))
+          parts.push_back(see(part, visible, *point));
+      }
+    }
+    for (SeenLamp& lamp : parts) {
+      lamp.light = static_cast<std::uint32_t>(n);
+      lamp.missed = missed;
+      if (lamp.visible > 0) point->radiance += lamp.seen.smooth.cwiseProduct(lamp.incident.irradiance);
+      point->lamps.push_back(std::move(lamp));
+    }
   }
 }
 
@@ -146,21 +192,20 @@ void Viewer::ask(const SeenPoint& point, double sigma_pixels, const SamplePlace&
   for (std::size_t n = 0; n < point.lamps.size(); ++n) {
     const SeenLamp& lamp = point.lamps[n];
     if (!(lamp.visible > 0)) continue;
-    query.light = static_cast<std::uint32_t>(n);
+    query.light = lamp.light;
+    query.missed_by_lamp = static_cast<float>(lamp.missed);
     if (gathering.patch_materials[point.material]) {
       query.query.roughness = lamp.seen.roughness;
       queries->lit.push_back(lit_brdf(query, point, lamp.incident));
       continue;
     }
-    const Color weight =
-        glints ? glints->weight(*point.hit, places.front(), point.frame, lamp.seen) : lamp.seen.glint_weight;
-    query.weight = weight.cwiseProduct(lamp.incident.irradiance).cast<float>();
+    query.weight = lamp.seen.glint_weight.cwiseProduct(lamp.incident.irradiance).cast<float>();
     if (!(query.weight.maxCoeff() > 0)) continue;
     if (!turns.empty()) query.query.half_vector_turn = turns[n], query.query.lobe_cov = lamp.lobe_cov;
     for (const GlintPlace& here : places) {
       query.query.footprint = here.footprint;
       query.query.half_vector = {lamp.seen.half_vector.dot(here.x), lamp.seen.half_vector.dot(here.y)};
-      query.query.roughness = glints ? glints->microroughness(here, lamp.seen) : lamp.seen.roughness;
+      query.query.roughness = lamp.seen.roughness;
       query.glints = here.point;
       queries->glints.push_back(query);
     }

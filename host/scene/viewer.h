@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -36,16 +37,32 @@ struct StaticScene {
   }
 };
 
-/// A lamp seen from a point.
+/// A lamp seen from a point, or a part of a large one.
 struct SeenLamp {
+  std::uint32_t light = 0;       ///< its index
   bool is_above = false;         ///< the horizons, with any power; else nothing below is set
   double visible = 0;            ///< share of it that no shadow hides
   Illumination incident;         ///< of what is visible
+  double missed = 0;             ///< as GlintQuery::missed_by_lamp
   double weight_unshadowed = 0;  ///< sum of the colours of what D would be multiplied with, without shadows
   LobesSeen seen;
   Eigen::Vector2d half_vector{0, 0};  ///< on the disk of the point's frame
   std::optional<Eigen::Matrix2d>
       lobe_cov;  ///< of its query, where the light's extent makes that longer one way
+};
+
+/// Whether two points look at the same lamps, cut into as many parts.
+template <typename Lamp>
+bool alike(const std::vector<Lamp>& a, const std::vector<Lamp>& b) {
+  return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(),
+                                            [](const Lamp& x, const Lamp& y) { return x.light == y.light; });
+}
+
+/// How a point looks at lamps.
+struct LampSampling {
+  /// Where on a lamp the shadow rays end, see ShadowRays; of a lamp without extent the first one does.
+  std::vector<Eigen::Vector2d> shadow_rays;
+  LampParts parts;
 };
 
 /// What a ray of the camera meets. Without a hit the radiance is all.
@@ -59,7 +76,7 @@ struct SeenPoint {
   Eigen::Matrix2d duv = Eigen::Matrix2d::Zero();  ///< its change a pixel to the right and down
   bool faces_eye = false;                         ///< else it sends nothing
   Color radiance = Color::Zero();                 ///< of what needs no P-NDF
-  std::vector<SeenLamp> lamps;                    ///< by light; empty where nothing is lit
+  std::vector<SeenLamp> lamps;                    ///< by light and part; empty where nothing is lit
 };
 
 /// The queries of rows, each row for itself.
@@ -87,13 +104,10 @@ struct Viewer {
   LightGathering gathering;
 
   /// The ray through (x, y), pixels from the left and from the top edge.
-  /// @param light_samples where on a light the shadow rays end, see ShadowRays; of a light without extent the
-  /// first one does.
-  SeenPoint look(double x, double y, const std::vector<Eigen::Vector2d>& light_samples) const;
+  SeenPoint look(double x, double y, const LampSampling& sampling) const;
 
-  /// Sees all lamps from a point that faces the eye, whose lamps and radiance are empty. @param light_samples
-  /// as those of `look`.
-  void see_lamps(const std::vector<Eigen::Vector2d>& light_samples, SeenPoint* point) const;
+  /// Sees all lamps from a point that faces the eye, whose lamps and radiance are empty.
+  void see_lamps(const LampSampling& sampling, SeenPoint* point) const;
 
   /// Adds what a Gaussian of `sigma_pixels` about a point that faces the eye has to be asked.
   /// @param turns of the half vector by lamp, per unit of uv; empty: they are constant.
@@ -101,8 +115,11 @@ struct Viewer {
            const std::vector<Eigen::Matrix2d>& turns, RowQueries* queries) const;
 
  private:
-  SeenLamp see(const LightDescription& light, const SeenPoint& point,
-               const std::vector<Eigen::Vector2d>& light_samples) const;
+  bool is_above(const Illumination& incident, const SeenPoint& point) const;
+  double visible_share(const LightDescription& light, const SeenPoint& point,
+                       const std::vector<Eigen::Vector2d>& shadow_rays) const;
+  SeenLamp see(const Illumination& incident, double visible, const SeenPoint& point) const;
+  double lobes_across(const SeenLamp& lamp, const SeenPoint& point) const;
   void gather(const SeenPoint& point, const std::vector<GlintPlace>& places, const SamplePlace& place,
               std::vector<LitPoint>* points) const;
   LitBrdf lit_brdf(const GlintQuery& query, const SeenPoint& point, const Illumination& incident) const;

@@ -2,10 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "host/base/constants.h"
+#include "host/base/error_norms.h"
 #include "host/scene/camera.h"
 #include "host/scene/light_samples.h"
 #include "host/scene/scene.h"
@@ -118,27 +121,39 @@ TEST(AreaLights, HalfVectorsSpreadAsTheirPointsDo) {
   }
 }
 
-/// Queries of one pixel on the plane z = 0, seen from `eye`, for a material of tiny roughness.
-Eigen::Matrix2d lobe_under(const LightDescription& light, const Vector3d& eye,
-                           const std::optional<CoatDescription>& coat) {
+/// Queries of one pixel on the plane z = 0, seen from `eye`.
+std::vector<GlintQuery> queries_under(const std::vector<LightDescription>& lights, const Vector3d& eye,
+                                      double roughness, const std::optional<CoatDescription>& coat,
+                                      const LampParts& parts) {
   SceneDescription scene;
   MaterialDescription material;
   material.name = "m";
-  material.roughness = 1e-4;
+  material.roughness = roughness;
   material.coat = coat;
   scene.materials = {material};
   scene.shapes = {{PlaneShape{{0, 0, 0}, 4}, "m"}};
   scene.camera.position = eye;
   scene.camera.look_at = {0, 0, 0};
   scene.camera.fov_degrees = 1;
-  scene.lights = {light};
+  scene.lights = lights;
   PixelSettings pixels;
   pixels.subpixels = 1;
   pixels.filter = PixelFilter({FilterKind::gaussian});
   pixels.fits = true;
   pixels.takes_first_order = {true};
-  const TracedRows rows = Scene(scene, 9, 9, pixels).trace(4, 1);
-  return rows.queries.at(rows.queries.size() / 2).query.lobe_cov.value();
+  pixels.lamp_parts = parts;
+  std::vector<GlintQuery> queries = Scene(scene, 9, 9, pixels).trace(4, 1).queries;
+  queries.erase(std::remove_if(queries.begin(), queries.end(),
+                               [](const GlintQuery& query) { return query.pixel != 4; }),
+                queries.end());
+  return queries;
+}
+
+/// The lobe of its one query, for a material of tiny roughness.
+Eigen::Matrix2d lobe_under(const LightDescription& light, const Vector3d& eye,
+                           const std::optional<CoatDescription>& coat) {
+  const std::vector<GlintQuery> queries = queries_under({light}, eye, 1e-4, coat, {});
+  return queries.at(0).query.lobe_cov.value();
 }
 
 /// A direction above z = 0, below an interface on it.
@@ -179,6 +194,86 @@ TEST(AreaLights, LobesAreAsLongAsTheirHalfVectorsSpread) {
             << degrees << " " << is_sphere << " " << ior;
         EXPECT_NEAR(lobe.determinant(), truth.determinant(), 0.05 * truth.determinant())
             << degrees << " " << is_sphere << " " << ior;
+      }
+}
+
+/// What a facet of each normal on the disk, about a place and within `reach` of it, mirrors of queries.
+std::vector<double> mirrored(const std::vector<GlintQuery>& queries, const Eigen::Vector2d& about,
+                             double reach) {
+  constexpr int steps = 60;
+  std::vector<double> sums(steps * steps, 0.0);
+  for (const GlintQuery& query : queries) {
+    const Eigen::Matrix2d lobe = lobe_covariance(query.query), inverse = lobe.inverse();
+    const double scale = query.weight[0] / (2 * kPi * std::sqrt(lobe.determinant()));
+    for (int n = 0; n < steps * steps; ++n) {
+      const Eigen::Vector2d normal =
+          about + reach * (Eigen::Vector2d(n % steps, n / steps) / (0.5 * steps) - Eigen::Vector2d::Ones());
+      const Eigen::Vector2d way = normal - query.query.half_vector;
+      sums[static_cast<std::size_t>(n)] += scale * std::exp(-0.5 * way.dot(inverse * way));
+    }
+  }
+  return sums;
+}
+
+std::vector<LightDescription> points_of(const LightDescription& light) {
+  constexpr int steps = 40;
+  std::vector<LightDescription> points;
+  const ShadowRays rays(light, {0, 0, 0});
+  for (int a = 0; a < steps; ++a)
+    for (int b = 0; b < steps; ++b) {
+      const Eigen::Vector2d on_disk = on_unit_disk({(a + 0.5) / steps, (b + 0.5) / steps});
+      const ShadowRay ray = rays.to(on_disk);
+      PointLight point{ray.distance * ray.direction};
+      double facing = 1;
+      if (const auto* disk = std::get_if<DiskLight>(&light)) {
+        facing = -ray.direction.dot(disk->direction.normalized());
+      } else {  // the outline of a sphere lies nearer than its middle
+        const auto& sphere = std::get<SphereLight>(light);
+        const double sine = sphere.radius / sphere.position.norm() * on_disk.norm();
+        const Vector3d z = sphere.position.normalized(), aside = point.position - point.position.dot(z) * z;
+        const Vector3d direction =
+            aside.norm() > 0 ? Vector3d(std::sqrt(1 - sine * sine) * z + sine * aside.normalized()) : z;
+        point.position = sphere.position.norm() * direction;
+        facing = 1 / std::sqrt(1 - sine * sine);
+      }
+      point.intensity = Color::Constant(facing / (steps * steps));
+      points.emplace_back(point);
+    }
+  return points;
+}
+
+// Brute force: 1600 lamps without extent in place of one. Images of lamps from less than one to five lobes
+// wide, from above to 75 degrees.
+TEST(AreaLights, PartsOfALampShowWhatItsPointsShow) {
+  for (const double degrees : {10.0, 50.0, 75.0})
+    for (const bool is_sphere : {true, false})
+      for (const double wide : {0.8, 2.0, 5.0}) {
+        SCOPED_TRACE(testing::Message()
+                     << degrees << " degrees, " << wide << " lobes, " << (is_sphere ? "sphere" : "disk"));
+        const double angle = degrees * kPi / 180, radius = 1.5;
+        const Vector3d to_light(std::sin(angle), 0, std::cos(angle)),
+            eye(-std::sin(angle), 0.2, std::cos(angle));
+        const LightDescription light =
+            is_sphere ? LightDescription(SphereLight{10 * to_light, radius, {1, 1, 1}})
+                      : LightDescription(DiskLight{10 * to_light, -to_light, radius, {1, 1, 1}});
+        // Half vectors spread most across the plane of both directions.
+        const double image = radius / 10 / (2 * std::cos(angle)), roughness = image / wide;
+        const auto shown = queries_under({light}, 4 * eye, roughness, {}, LampParts::of(19, 0.01));
+        const auto one = queries_under({light}, 4 * eye, roughness, {}, {});
+        const auto expected = queries_under(points_of(light), 4 * eye, roughness, {}, {});
+        ASSERT_EQ(one.size(), 1U);
+        const double reach = image + 3 * roughness;
+        const Eigen::Vector2d about = one[0].query.half_vector;
+        const std::vector<double> truth = mirrored(expected, about, reach);
+        const double error = relative_l2(mirrored(shown, about, reach), truth);
+        std::printf("%2.0f degrees, %.1f lobes, %s: %zu queries, relative L2 %.4f, one Gaussian %.4f\n",
+                    degrees, wide, is_sphere ? "sphere" : "disk", shown.size(), error,
+                    relative_l2(mirrored(one, about, reach), truth));
+        EXPECT_LT(error, 0.02) << shown.size() << " queries";
+        EXPECT_EQ(shown.size(), wide < 1 ? 1U : wide < 3 ? 7U : 19U);
+        if (wide > 3) {
+          EXPECT_GT(relative_l2(mirrored(one, about, reach), truth), 0.15);
+        }
       }
 }
 
