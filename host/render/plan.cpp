@@ -39,9 +39,11 @@ PlannedEvaluator plan_evaluator(const Job& job, int surface_index, int material_
   return planned;
 }
 
-/// Whether half vectors turn, or lamps make lobes longer one way.
+/// Whether half vectors turn, or lamps or materials make lobes longer one way.
 bool may_ask_first_order(const Job& job) {
   return job.image.filter.kind != FilterKind::subpixels ||
+         std::any_of(job.scene.materials.begin(), job.scene.materials.end(),
+                     [](const MaterialDescription& material) { return material.long_roughness.has_value(); }) ||
          std::any_of(job.scene.lights.begin(), job.scene.lights.end(), has_extent);
 }
 
