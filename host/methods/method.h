@@ -26,6 +26,7 @@ struct MethodTraits {
   bool densities = true;          ///< it answers D
   bool brdf = false;              ///< it has a BRDF of its own
   bool lit_by_brdf = false;       ///< a job's lights are multiplied with that BRDF, and not with a density
+  bool brdf_references = false;   ///< it has those
   bool device = true;             ///< it runs on a device
   bool jobs = true;               ///< materials may name it
   bool compared = true;           ///< benchmarks and hard cases ask it
@@ -101,6 +102,14 @@ class Method {
   /// oracle of `surface`; both have to outlive the standard, and are null without a map.
   virtual std::unique_ptr<Standard> standard(const Surface* surface, const reference::Oracle* map,
                                              const MethodSettings& settings) const;
+
+  /// f(o, i) cos of light that bounced once, without Fresnel's factor, by the BRDF's own definition in double
+  /// precision; empty where there is none to compare with.
+  virtual std::vector<double> brdf_references(const std::vector<BrdfQuery>& /*queries*/,
+                                              const Surface& /*surface*/,
+                                              const MethodSettings& /*settings*/) const {
+    return {};
+  }
 
   /// Settings that make it as hard as a map of this size.
   virtual std::unique_ptr<MethodSettings> settings_beside(int /*width*/, int /*height*/) const {

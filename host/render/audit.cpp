@@ -17,10 +17,40 @@ bool lower_key(const AuditSample& a, const AuditSample& b) {
   return a.key < b.key;
 }
 
+double density_of(const BrdfQuery& query, double single) {
+  return 4 * query.view.z() * single;
+}
+
+/// Of those whose BRDF was asked, by the evaluators' own definitions.
+void add_brdf_references(const std::vector<AuditSample>& samples, std::size_t evaluators,
+                         const BrdfReferences& brdf_references, std::vector<double>* references) {
+  for (std::size_t evaluator = 0; evaluator < evaluators; ++evaluator) {
+    std::vector<std::size_t> places;
+    std::vector<BrdfQuery> queries;
+    for (std::size_t n = 0; n < samples.size(); ++n)
+      if (samples[n].brdf && samples[n].evaluator == static_cast<int>(evaluator))
+        places.push_back(n), queries.push_back(*samples[n].brdf);
+    if (queries.empty()) continue;
+    const std::vector<double> answers = brdf_references(evaluator, queries);
+    for (std::size_t n = 0; n < places.size(); ++n)
+      (*references)[places[n]] = density_of(queries[n], answers[n]);
+  }
+}
+
 }  // namespace
 
 void AuditSampler::offer(std::uint64_t pixel, std::uint64_t ordinal, const Query& query, float density,
                          int evaluator, const GlintPoint& glints) {
+  offer(pixel, ordinal, {0, query, density, evaluator, glints, {}});
+}
+
+void AuditSampler::offer_brdf(std::uint64_t pixel, std::uint64_t ordinal, const BrdfQuery& query,
+                              float single, int evaluator) {
+  const auto density = static_cast<float>(density_of(query, single));
+  offer(pixel, ordinal, {0, {}, density, evaluator, {}, query});
+}
+
+void AuditSampler::offer(std::uint64_t pixel, std::uint64_t ordinal, AuditSample sample) {
   if (samples_ == 0) return;
   const std::uint64_t key = scramble_bits(scramble_bits(mix_bits(seed_) ^ pixel) ^ ordinal);
   if (heap_.size() == samples_) {
@@ -28,7 +58,8 @@ void AuditSampler::offer(std::uint64_t pixel, std::uint64_t ordinal, const Query
     std::pop_heap(heap_.begin(), heap_.end(), lower_key);
     heap_.pop_back();
   }
-  heap_.push_back({key, query, density, evaluator, glints});
+  sample.key = key;
+  heap_.push_back(std::move(sample));
   std::push_heap(heap_.begin(), heap_.end(), lower_key);
 }
 
@@ -39,17 +70,18 @@ std::vector<AuditSample> AuditSampler::samples() const {
 }
 
 std::vector<AuditedSample> audit(const std::vector<AuditSample>& samples,
-                                 const std::vector<const Surface*>& surfaces) {
+                                 const std::vector<const Surface*>& surfaces,
+                                 const BrdfReferences& brdf_references) {
   std::vector<double> reference(samples.size());
   for (std::size_t n = 0; n < samples.size(); ++n)
-    if (!surfaces[static_cast<std::size_t>(samples[n].evaluator)])
+    if (!samples[n].brdf && !surfaces[static_cast<std::size_t>(samples[n].evaluator)])
       reference[n] = reference::GlintProcess(samples[n].glints).density_of(samples[n].query);
   for (std::size_t surface = 0; surface < surfaces.size(); ++surface) {
     if (!surfaces[surface]) continue;
     std::vector<std::size_t> places;
     std::vector<Query> queries;
     for (std::size_t n = 0; n < samples.size(); ++n) {
-      if (samples[n].evaluator != static_cast<int>(surface)) continue;
+      if (samples[n].brdf || samples[n].evaluator != static_cast<int>(surface)) continue;
       places.push_back(n);
       queries.push_back(with_wider_lobe(samples[n].query, surfaces[surface]->lobe_variance()));
     }
@@ -58,6 +90,7 @@ std::vector<AuditedSample> audit(const std::vector<AuditSample>& samples,
         reference::Oracle(*surfaces[surface], kOracleTolerance).evaluate(queries);
     for (std::size_t n = 0; n < places.size(); ++n) reference[places[n]] = answers[n].density;
   }
+  add_brdf_references(samples, surfaces.size(), brdf_references, &reference);
   std::vector<AuditedSample> audited;
   for (std::size_t n = 0; n < samples.size(); ++n)
     audited.push_back({samples[n].key, samples[n].density, reference[n]});

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <vector>
 
 #include "host/base/glints.h"
@@ -16,7 +18,8 @@ struct AuditSample {
   Query query;
   float density = 0;
   int evaluator = 0;
-  GlintPoint glints{};  ///< of evaluators without a surface
+  GlintPoint glints{};                           ///< of evaluators without a surface
+  std::optional<BrdfQuery> brdf = std::nullopt;  ///< what was asked in place of `query`
 };
 
 /// A uniform random sample of a job's queries. It depends on the seed and on the queries' places in the image
@@ -29,10 +32,17 @@ class AuditSampler {
   void offer(std::uint64_t pixel, std::uint64_t ordinal, const Query& query, float density, int evaluator,
              const GlintPoint& glints = {});
 
+  /// Of a light that is multiplied with a patch's BRDF: its density is what single bounces would make of a
+  /// density without masking, 4 (o.g) f cos, in the units of others.
+  void offer_brdf(std::uint64_t pixel, std::uint64_t ordinal, const BrdfQuery& query, float single,
+                  int evaluator);
+
   /// What was kept, by key.
   std::vector<AuditSample> samples() const;
 
  private:
+  void offer(std::uint64_t pixel, std::uint64_t ordinal, AuditSample sample);
+
   std::uint64_t seed_;
   std::size_t samples_;
   std::vector<AuditSample> heap_;  // largest key first
@@ -55,10 +65,15 @@ struct AuditedSample {
   double reference = 0;
 };
 
+/// What an evaluator's BRDF should have answered, see Method::brdf_references.
+using BrdfReferences =
+    std::function<std::vector<double>(std::size_t evaluator, const std::vector<BrdfQuery>& queries)>;
+
 /// Re-evaluates the samples in double precision; `surfaces` by AuditSample::evaluator, null for `grid`, whose
 /// reference is its definition.
 std::vector<AuditedSample> audit(const std::vector<AuditSample>& samples,
-                                 const std::vector<const Surface*>& surfaces);
+                                 const std::vector<const Surface*>& surfaces,
+                                 const BrdfReferences& brdf_references = {});
 
 /// Sums up samples, in the order of their keys.
 AuditResult audit_result(const std::vector<AuditedSample>& samples);

@@ -85,7 +85,7 @@ std::size_t gather_light(const BuiltJob& built, TracedRows* rows) {
   return questions;
 }
 
-std::size_t add_lit_brdfs(const BuiltJob& built, TracedRows* rows) {
+std::size_t add_lit_brdfs(const BuiltJob& built, TracedRows* rows, const SeeLitBrdf& see) {
   const std::size_t count = rows->lit.size();
   std::vector<std::vector<std::size_t>> of_brdf(built.plan().evaluators.size());
   for (std::size_t n = 0; n < count; ++n)
@@ -100,6 +100,7 @@ std::size_t add_lit_brdfs(const BuiltJob& built, TracedRows* rows) {
   }
   std::vector<Color> radiance(rows->sample_radiance.size(), Color::Zero());
   for (std::size_t n = 0; n < count; ++n) {
+    if (see) see(rows->lit[n], values[n]);
     const LitBrdf& lit = rows->lit[n];
     radiance[lit.sample] += values[n].single * lit.weight_single.cast<double>() +
                             values[n].multiple * lit.weight_multiple.cast<double>();

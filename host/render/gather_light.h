@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 
 #include "host/render/built_job.h"
 
@@ -18,7 +19,10 @@ namespace mica::host {
 /// @return how many questions the materials' BRDFs answered.
 std::size_t gather_light(const BuiltJob& built, TracedRows* rows);
 
+/// Told of each light and what its BRDF answered, in their order.
+using SeeLitBrdf = std::function<void(const LitBrdf& lit, const BrdfValue& value)>;
+
 /// Adds to `rows->sample_radiance` the lights of `rows->lit`, and empties it. @return how many they were.
-std::size_t add_lit_brdfs(const BuiltJob& built, TracedRows* rows);
+std::size_t add_lit_brdfs(const BuiltJob& built, TracedRows* rows, const SeeLitBrdf& see = {});
 
 }  // namespace mica::host

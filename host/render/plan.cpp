@@ -42,8 +42,9 @@ PlannedEvaluator plan_evaluator(const Job& job, int surface_index, int material_
 /// Whether half vectors turn, or lamps or materials make lobes longer one way.
 bool may_ask_first_order(const Job& job) {
   return job.image.filter.kind != FilterKind::subpixels ||
-         std::any_of(job.scene.materials.begin(), job.scene.materials.end(),
-                     [](const MaterialDescription& material) { return material.long_roughness.has_value(); }) ||
+         std::any_of(
+             job.scene.materials.begin(), job.scene.materials.end(),
+             [](const MaterialDescription& material) { return material.long_roughness.has_value(); }) ||
          std::any_of(job.scene.lights.begin(), job.scene.lights.end(), has_extent);
 }
 
@@ -102,20 +103,23 @@ double mebibytes(std::size_t bytes) {
   return static_cast<double>(bytes) / (1 << 20);
 }
 
-/// The audit and the channel `ndf.Y` are of densities, which lights that are multiplied with a BRDF never ask
-/// for.
+/// The channel `ndf.Y` is of densities, which lights that are multiplied with a BRDF never ask for; the audit
+/// takes such a BRDF where its method has a definition in double precision.
 std::vector<std::string> missing_densities(const Job& job, const Plan& plan) {
-  std::vector<std::string> asked, warnings;
-  if (job.audit.samples > 0) asked.emplace_back("[audit]");
-  if (std::find(plan.channels.begin(), plan.channels.end(), "ndf.Y") != plan.channels.end())
-    asked.emplace_back("the AOV ndf");
-  if (asked.empty()) return warnings;
-  for (const PlannedEvaluator& e : plan.evaluators)
-    if (e.patch_brdf && !e.asks_densities)
-      warnings.push_back(fmt::format(
-          "{} {} nothing of material {}: its light is that of the BRDF of {}, and not of a density",
-          fmt::join(asked, " and "), asked.size() > 1 ? "see" : "sees", fmt::join(e.materials, ", "),
-          e.evaluator));
+  const bool has_channel =
+      std::find(plan.channels.begin(), plan.channels.end(), "ndf.Y") != plan.channels.end();
+  std::vector<std::string> warnings;
+  for (const PlannedEvaluator& e : plan.evaluators) {
+    if (!e.patch_brdf || e.asks_densities) continue;
+    std::vector<std::string> asked;
+    if (job.audit.samples > 0 && !method_of(job, e).traits().brdf_references) asked.emplace_back("[audit]");
+    if (has_channel) asked.emplace_back("the AOV ndf");
+    if (asked.empty()) continue;
+    warnings.push_back(
+        fmt::format("{} {} nothing of material {}: its light is that of the BRDF of {}, and not of a density",
+                    fmt::join(asked, " and "), asked.size() > 1 ? "see" : "sees",
+                    fmt::join(e.materials, ", "), e.evaluator));
+  }
   return warnings;
 }
 

@@ -57,6 +57,36 @@ std::string describe_extent(double relative_l2) {
       relative_l2);
 }
 
+/// Offers a block's lights that are multiplied with a BRDF, as they come.
+class OfferBrdfs {
+ public:
+  OfferBrdfs(const BuiltJob& built, int first_row, AuditSampler* sampler)
+      : built_(built), first_row_(first_row), sampler_(sampler) {}
+
+  void operator()(const LitBrdf& lit, const BrdfValue& value) {
+    if (lit.pixel == GlintQuery::kNone) return;
+    ordinal_ = lit.pixel == pixel_ ? ordinal_ + 1 : 0, pixel_ = lit.pixel;
+    const Plan& plan = built_.plan();
+    const int evaluator = plan.evaluator_of_material[lit.material];
+    if (!method_of(built_.job(), plan.evaluators[static_cast<std::size_t>(evaluator)])
+             .traits()
+             .brdf_references)
+      return;
+    const std::uint64_t before =
+        static_cast<std::uint64_t>(first_row_) * static_cast<std::uint64_t>(built_.job().image.width);
+    sampler_->offer_brdf(before + lit.pixel, kBrdfs + ordinal_, lit.query, value.single, evaluator);
+  }
+
+ private:
+  static constexpr std::uint64_t kBrdfs = std::uint64_t{1} << 32;  // ordinals beyond those of densities
+
+  const BuiltJob& built_;
+  int first_row_;
+  AuditSampler* sampler_;
+  std::uint32_t pixel_ = GlintQuery::kNone;
+  std::uint64_t ordinal_ = 0;
+};
+
 std::vector<float> estimate_errors(const BuiltJob& built, const TracedRows& rows,
                                    const std::vector<float>& densities) {
   std::vector<float> errors(densities.size());
@@ -86,7 +116,8 @@ void evaluate_rows(const BuiltJob& built, const RowRange& rows, const RenderProg
       TracedRows traced = built.trace(row, std::min(rows_a_block, end - row));
       result->seconds.trace += tracing.seconds();
       const Stopwatch gathering;
-      result->queries += add_lit_brdfs(built, &traced) + gather_light(built, &traced);
+      result->queries += add_lit_brdfs(built, &traced, OfferBrdfs(built, traced.first_row, sampler));
+      result->queries += gather_light(built, &traced);
       result->seconds.gather += gathering.seconds();
       next.emplace(std::move(traced), built);
     }
@@ -159,7 +190,12 @@ RenderResult evaluate_frame(BuiltJob& built, int frame, const DeviceInfo& device
   evaluate_rows(built, rows, progress, take, &sampler, &result);
 
   const Stopwatch auditing;
-  result.audited = audit(sampler.samples(), built.surfaces());
+  result.audited =
+      audit(sampler.samples(), built.surfaces(), [&](std::size_t n, const std::vector<BrdfQuery>& queries) {
+        const PlannedEvaluator& planned = built.plan().evaluators[n];
+        return method_of(job, planned)
+            .brdf_references(queries, *built.surfaces()[n], settings_of(job, planned));
+      });
   result.audit = audit_result(result.audited);
   result.seconds.audit = auditing.seconds();
   result.seconds.surfaces = built.surface_seconds();

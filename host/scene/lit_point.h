@@ -32,7 +32,7 @@ struct LitPoint {
 /// A light seen in a footprint whose material is a patch BRDF, with what its two parts are multiplied with.
 struct LitBrdf {
   BrdfQuery query;
-  std::uint32_t sample = 0;  ///< of the lattice
+  std::uint32_t pixel = 0, sample = 0;  ///< as of a GlintQuery
   std::uint32_t material = 0;
   Eigen::Vector3f weight_single = Eigen::Vector3f::Zero();    ///< radiance into the sample per unit of it
   Eigen::Vector3f weight_multiple = Eigen::Vector3f::Zero();  ///< the same of light that bounced more often

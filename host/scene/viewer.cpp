@@ -152,7 +152,7 @@ LitBrdf Viewer::lit_brdf(const GlintQuery& query, const SeenPoint& point,
   const LayeredMaterial& material = (*layers)[query.material];
   const CoatCrossing crossing(material, point.frame.to_local(point.to_eye));
   lit.query = {query.query.footprint, crossing.view_below(), crossing.below(light), query.query.roughness};
-  lit.sample = query.sample;
+  lit.pixel = query.pixel, lit.sample = query.sample;
   lit.material = query.material;
   const Color irradiance = incident.irradiance.cwiseProduct(crossing.value_scale(light));
   const BounceFresnel fresnel(material, lit.query.view, lit.query.light);

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include "host/methods/beckmanns/beckmann_brdf.h"
 #include "host/methods/beckmanns/beckmann_evaluator.h"
@@ -7,6 +8,7 @@
 #include "host/methods/beckmanns/lobes.h"
 #include "host/methods/beckmanns/slope_pyramid.h"
 #include "host/methods/method.h"
+#include "host/reference/beckmann_mixture.h"
 
 namespace mica::host {
 namespace {
@@ -19,7 +21,7 @@ class BeckmannsMethod : public Method {
   }
   MethodTraits traits() const override {
     MethodTraits traits;
-    traits.brdf = traits.lit_by_brdf = true;
+    traits.brdf = traits.lit_by_brdf = traits.brdf_references = true;
     return traits;
   }
   bool takes(Interpolation interpolation) const override { return interpolation != Interpolation::bicubic; }
@@ -30,6 +32,19 @@ class BeckmannsMethod : public Method {
   bool conserves_energy(const MethodSettings& settings) const override {
     const auto& own = settings_as<BeckmannSettings>(settings);
     return own.masking == Masking::exact || own.energy_bound == EnergyBound::patch;
+  }
+
+  /// Of exact masking, which is what others approximate.
+  std::vector<double> brdf_references(const std::vector<BrdfQuery>& queries, const Surface& surface,
+                                      const MethodSettings& settings) const override {
+    const reference::BeckmannMixture mixture(surface, settings_as<BeckmannSettings>(settings).elements);
+    std::vector<double> references(queries.size());
+    tbb::parallel_for(std::size_t{0}, queries.size(), [&](std::size_t n) {
+      const BrdfQuery& query = queries[n];
+      references[n] = reference::BeckmannMixture::scattering(mixture.lobes(query.footprint, query.roughness),
+                                                             query.view, query.light);
+    });
+    return references;
   }
 
   StructureSize structure(const StructureAsked& asked, const MethodSettings& settings) const override {

@@ -3,6 +3,7 @@
 #include "host/methods/cavities/cavity_brdf.h"
 #include "host/methods/map/map_structure.h"
 #include "host/methods/method.h"
+#include "host/reference/cavity.h"
 
 namespace mica::host {
 namespace {
@@ -46,13 +47,19 @@ class CavitiesMethod : public Method {
   }
   MethodTraits traits() const override {
     MethodTraits traits;
-    traits.brdf = traits.lit_by_brdf = true;
+    traits.brdf = traits.lit_by_brdf = traits.brdf_references = true;
     traits.densities = traits.compared = false;
     return traits;
   }
   bool takes(Interpolation interpolation) const override { return interpolation != Interpolation::bicubic; }
   std::unique_ptr<MethodSettings> settings() const override {
     return std::make_unique<CavityMethodSettings>();
+  }
+
+  std::vector<double> brdf_references(const std::vector<BrdfQuery>& queries, const Surface& surface,
+                                      const MethodSettings& settings) const override {
+    return reference::CavityMixture(surface, settings_as<CavityMethodSettings>(settings).per_texel)
+        .single(queries);
   }
 
   StructureSize structure(const StructureAsked& asked, const MethodSettings& settings) const override {
