@@ -53,7 +53,7 @@ Eigen::Vector2d GlintMaterial::alpha_at(const Eigen::Vector2d& uv) const {
   return (glints_.alpha * factor(alpha_, uv)).cwiseMax(kLeastRoughness);
 }
 
-double GlintMaterial::microroughness_at(const Eigen::Vector2d& uv) const {
+double GlintMaterial::microroughness(const Eigen::Vector2d& uv) const {
   return std::max(material_.roughness * factor(microroughness_, uv), kLeastRoughness);
 }
 
@@ -72,7 +72,7 @@ std::vector<GlintPlace> GlintMaterial::places(const CameraRay& ray, const Hit& h
                                               double sigma_pixels) const {
   GlintPlace place;
   const Eigen::Vector2d alpha = alpha_at(hit.uv);
-  place.microroughness = microroughness_at(hit.uv);
+  place.microroughness = microroughness(hit.uv);
   place.point.distribution = glints_.distribution;
   place.point.alpha_x = static_cast<float>(alpha.x()), place.point.alpha_y = static_cast<float>(alpha.y());
   place.point.stretch = static_cast<float>(glints_.stretch);
@@ -139,9 +139,9 @@ Color GlintMaterial::weight(const Hit& hit, const TangentFrame& frame, const Lob
   return seen.mirrored.cwiseProduct(tint(hit.uv)) * (G / (4 * view.z()));
 }
 
-double GlintMaterial::microroughness(const Eigen::Vector2d& uv, const LobesSeen& seen) const {
-  const double widened = seen.roughness * seen.roughness - material_.roughness * material_.roughness;
-  return std::min(std::sqrt(std::pow(microroughness_at(uv), 2) + std::max(widened, 0.0)), 1.0);
+double GlintMaterial::widened(double microroughness, const LobesSeen& seen) const {
+  const double more = seen.roughness * seen.roughness - material_.roughness * material_.roughness;
+  return std::min(std::sqrt(microroughness * microroughness + std::max(more, 0.0)), 1.0);
 }
 
 }  // namespace mica::host

@@ -50,15 +50,16 @@ class GlintMaterial {
   /// Colour of the reflection by its texture.
   Color tint(const Eigen::Vector2d& uv) const;
 
-  /// The microroughness at a place of the shape that a query asks with: the light's extent widens it.
-  double microroughness(const Eigen::Vector2d& uv, const LobesSeen& seen) const;
+  /// The microroughness at a place of the shape.
+  double microroughness(const Eigen::Vector2d& uv) const;
+  /// What a query asks with in its place: the light's extent widens it.
+  double widened(double microroughness, const LobesSeen& seen) const;
 
   /// Whether each pixel's processes lie in uv, one footprint for all.
   bool has_one_place() const { return glints_.mapping == GlintsDescription::Mapping::uv; }
 
  private:
   Eigen::Vector2d alpha_at(const Eigen::Vector2d& uv) const;
-  double microroughness_at(const Eigen::Vector2d& uv) const;
   void split_by_stretch(const Eigen::Vector2d& uv, std::vector<GlintPlace>* places) const;
   void split_by_plane(const CameraRay& ray, const Hit& hit, const TangentFrame& frame, double sigma_pixels,
                       std::vector<GlintPlace>* places) const;

@@ -20,13 +20,12 @@ Eigen::Matrix2d on_disk(const TangentFrame& frame, const Eigen::Matrix3d& half_v
   return cov;
 }
 
-/// Covariance on the disk of a material's lobe that half vectors of some covariance widen; none where it is
-/// round.
-std::optional<Eigen::Matrix2d> long_lobe(const MaterialDescription& material, const TangentFrame& frame,
+/// Covariance on the disk of a lobe that half vectors of some covariance widen; none where it is round.
+std::optional<Eigen::Matrix2d> long_lobe(const Eigen::Vector2d& roughness_uv, const TangentFrame& frame,
                                          const Eigen::Matrix3d& half_vector_cov) {
   constexpr double round = 0.02;  // half the difference of both variances, of their mean
   Eigen::Matrix2d cov = on_disk(frame, half_vector_cov);
-  cov.diagonal() += material.roughness_uv().cwiseAbs2();
+  cov.diagonal() += roughness_uv.cwiseAbs2();
   const double mean = cov.trace() / 2;
   const double difference = std::hypot(cov(0, 0) - mean, cov(0, 1));
   if (!(difference > round * mean && mean + difference < 1)) return std::nullopt;
@@ -79,15 +78,16 @@ SeenLamp Viewer::see(const Illumination& incident, double visible, const SeenPoi
   lamp.incident.irradiance *= visible;
   lamp.seen = see_lobes((*layers)[point.material], frame.z, point.to_eye, lamp.incident);
   lamp.half_vector = frame.on_disk(lamp.seen.half_vector);
-  lamp.lobe_cov = long_lobe(shared->materials[point.material], frame, lamp.seen.half_vector_cov);
   const Color regained = (*layers)[point.material].regained(frame.to_local(lamp.seen.to_eye));
   lamp.seen.mirrored = lamp.seen.mirrored.cwiseProduct(regained);
   lamp.seen.glint_weight = lamp.seen.glint_weight.cwiseProduct(regained);
+  Eigen::Vector2d roughness_uv = shared->materials[point.material].roughness_uv();
   if (const std::optional<GlintMaterial>& glints = shared->glints[point.material]) {
+    roughness_uv.setConstant(glints->microroughness(point.hit->uv));
     lamp.seen.glint_weight = glints->weight(*point.hit, frame, lamp.seen);
-    lamp.seen.roughness = glints->microroughness(point.hit->uv, lamp.seen);
-    lamp.lobe_cov.reset();
+    lamp.seen.roughness = glints->widened(roughness_uv.x(), lamp.seen);
   }
+  lamp.lobe_cov = long_lobe(roughness_uv, frame, lamp.seen.half_vector_cov);
   lamp.weight_unshadowed = lamp.seen.glint_weight.dot(incident.irradiance);
   return lamp;
 }
