@@ -25,7 +25,7 @@ file(GLOB_RECURSE kernel_programs CONFIGURE_DEPENDS ${kernels}/*.cl)
 file(GLOB_RECURSE kernel_headers CONFIGURE_DEPENDS ${kernels}/*.h)
 set(parts map/catmull_rom.h map/texel_quads.h map/walk_leaves.h pyramid/turned_elements.h pyramid/walk_records.h
     smooth/turned_slopes.h wave/primitives.h)  # of what includes them
-set(of_first_order gaussians/gaussians.cl pyramid/pyramid.cl smooth/smooth.cl triangles/triangles.cl)  # a variant
+set(of_first_order gaussians/gaussians.cl grid/grid.cl pyramid/pyramid.cl smooth/smooth.cl triangles/triangles.cl)  # a variant
 set(of_records images/pyramid_images.cl pyramid/pyramid.cl)  # whose width is a variant
 set(compile_kernel ${CLANG} -x cl -cl-std=CL1.2 -fsyntax-only -Wall -Wextra -Werror -I ${kernels})
 set(kernel_stamps)

@@ -64,6 +64,20 @@ enum {
   MICA_GLINT_PRESENCE,    // share of its glints that are there: share * kept
   MICA_GLINT_BRIGHTNESS,  // 1 / kept: of the glints that are there
   MICA_GLINT_FIELDS,
+  // What queries have besides whose half vector turns, or whose lobe is not round (MICA_FIRST_ORDER), all on
+  // the unit square that the disk of half vectors is mapped to. A lobe has a Cholesky factor (a 0; c b).
+  MICA_GLINT_LOBE_A = MICA_GLINT_FIELDS,  // a
+  MICA_GLINT_LOBE_B,                      // b
+  MICA_GLINT_LOBE_SHEAR,                  // c / b
+  MICA_GLINT_TURN_A1,  // (a 0; c b)^-1 times the turn over a standard deviation along the first row of W ...
+  MICA_GLINT_TURN_A2,  // ... and along the second
+  MICA_GLINT_TURN_B1,
+  MICA_GLINT_TURN_B2,
+  MICA_GLINT_SPREAD_A,  // standard deviations of lobe and turn together
+  MICA_GLINT_SPREAD_B,
+  MICA_GLINT_SPREAD_TANGENT,  // of half the arcsine of their correlation, in (-1, 1)
+  MICA_GLINT_DENSITY,  // mean of the smooth distribution over the footprint, on the disk of half vectors
+  MICA_GLINT_TURNED_FIELDS,
   MICA_GLINT_PADDING = 256  // queries: a batch is padded to whole work-groups
 };
 

@@ -19,7 +19,8 @@ struct Glint {
 Glint glint_of_cell(std::int64_t i, std::int64_t j, std::int64_t k, std::int64_t l, int level,
                     std::uint32_t seed);
 
-/// A glint surface as [Kem25] Algorithm 1 defines it, in double precision and without regard to speed.
+/// A glint surface as [Kem25] Algorithm 1 defines it, in double precision and without regard to speed; and as
+/// docs/grid.md does where the half vector turns over the footprint.
 struct GlintProcess {
   GlintProcess() = default;
   explicit GlintProcess(const GlintPoint& point);
@@ -29,8 +30,10 @@ struct GlintProcess {
   double density = 1e6;                 ///< cells per unit area of uv
   double stretch = 1;                   ///< how much longer each glint is along u
   std::uint32_t seed = 1;
-  double share = 1;  ///< share of the light
-  double kept = 1;   ///< share of the glints that are there
+  double share = 1;       ///< share of the light
+  double kept = 1;        ///< share of the glints that are there
+  int angular_cells = 2;  ///< cells a side of the disk whose glints are seen; the expectation of others.
+                          ///< Even: 2 by definition
 
   /// Density of normals over the disk at the query's half vector.
   double density_of(const Query& query) const { return densities_of(query, 1).front(); }
@@ -42,6 +45,10 @@ struct GlintProcess {
   /// T: to the unit square, in whose inscribed disk glints are uniform.
   Eigen::Vector2d to_disk(const Eigen::Vector2d& half_vector) const;
   Eigen::Vector2d from_disk(const Eigen::Vector2d& point) const;
+  /// The Jacobian of `to_disk`, at half vectors on the disk.
+  Eigen::Matrix2d map_jacobian(const Eigen::Vector2d& half_vector) const;
+  /// Mean of `smooth_density` over the query's footprint where its half vector turns, by nine points.
+  double mean_density(const Query& query) const;
 };
 
 }  // namespace mica::host::reference

@@ -42,6 +42,22 @@ std::vector<Query> queries_for(const GlintsDescription& glints, const reference:
   return queries;
 }
 
+/// The same with half vectors that turn by a tenth of a lobe to four over the footprint, and lobes to 2:1.
+std::vector<Query> turned_queries_for(const GlintsDescription& glints,
+                                      const reference::GlintProcess& process) {
+  std::vector<Query> queries = queries_for(glints, process);
+  for (std::size_t n = 0; n < queries.size(); ++n) {
+    Query& query = queries[n];
+    const double lobe = query.roughness, slant = 2 * kPi * random_unit(2, 0, n);
+    Eigen::Matrix2d along;
+    along << std::cos(slant), -std::sin(slant), 0.5 * std::sin(slant), 0.5 * std::cos(slant);
+    query.half_vector_turn =
+        0.1 * std::pow(40, random_unit(2, 1, n)) * lobe / std::sqrt(query.footprint.cov_uv(0, 0)) * along;
+    query.lobe_cov = lobe * lobe * (Eigen::Matrix2d() << 3, 1.5, 1.5, 2).finished();
+  }
+  return queries;
+}
+
 /// The largest error in units of what is allowed; what is no number counts as infinite.
 void take(double error, double allowed, Check* check) {
   ++check->points;
@@ -49,10 +65,10 @@ void take(double error, double allowed, Check* check) {
   if (!(ratio <= check->worst)) check->worst = std::isnan(ratio) ? HUGE_VAL : ratio;
 }
 
-void check_densities(Device* device, const GlintsDescription& glints, Check* check) {
+void check_densities(Device* device, const GlintsDescription& glints, const std::vector<Query>& queries,
+                     Check* check) {
   const GlintGrid grid = grid_of(glints);
   const reference::GlintProcess process(grid.point());
-  const std::vector<Query> queries = queries_for(glints, process);
   const std::vector<float> densities = GridEvaluator(*device, grid).evaluate(queries);
   for (std::size_t n = 0; n < queries.size(); ++n) {
     const double expected = process.density_of(queries[n]),
@@ -86,14 +102,16 @@ std::vector<Check> check_grid(Device* device) {
   std::vector<Check> checks;
   for (const Distribution distribution : {Distribution::trowbridge_reitz, Distribution::beckmann}) {
     const std::string name = distribution == Distribution::beckmann ? "beckmann" : "ggx";
-    Check densities{"grid: " + name}, draws{"grid: draws of " + name};
+    Check densities{"grid: " + name}, turns{"grid: turns of " + name}, draws{"grid: draws of " + name};
     for (const double alpha : {0.1, 0.4, 0.8}) {
       check_interrupt();
       const GlintsDescription glints = glints_of(distribution, alpha, 1e6);
-      check_densities(device, glints, &densities);
+      const reference::GlintProcess process(grid_of(glints).point());
+      check_densities(device, glints, queries_for(glints, process), &densities);
+      check_densities(device, glints, turned_queries_for(glints, process), &turns);
       check_draws(device, glints, &draws);
     }
-    checks.push_back(densities), checks.push_back(draws);
+    checks.push_back(densities), checks.push_back(turns), checks.push_back(draws);
   }
   return checks;
 }

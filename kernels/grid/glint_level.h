@@ -4,6 +4,7 @@
 
 #include "grid/glint_hash.h"
 #include "grid/glint_maps.h"
+#include "grid/glint_turn.h"
 #include "types.h"
 #include "wave/gaussian.h"
 #include "wave/wave.h"
@@ -17,7 +18,6 @@
 #define MICA_GLINT_COLORS 1
 #endif
 
-#define INVERSE_TWO_PI 0.159154943f
 #define LEAST_POWER \
   -80.0f  // a power of two: what is less counts as zero, so that no product is a (slow) denormal
 #define ROULETTE_SOFTNESS 0.1f  // epsilon of Eq. 8
@@ -49,6 +49,9 @@ typedef struct {
   wave_float center_a, center_b;                          // direction less the centre of the disk, in cells
   wave_float weight;                                      // weight of the level
   wave_float share, presence, inverse_width, brightness;  // what the process has, where MICA_GLINT_ROULETTE
+#if MICA_FIRST_ORDER
+  glint_turn turn;
+#endif
 } glint_level;
 
 typedef struct {
@@ -67,6 +70,9 @@ static inline glint_density sum_of_glints(private const glint_level* g) {
   const wave_float w1x = EXP2_SCALE * g->w1x, w1y = EXP2_SCALE * g->w1y, w2x = EXP2_SCALE * g->w2x,
                    w2y = EXP2_SCALE * g->w2y;
   const wave_float n_a = EXP2_SCALE * g->inverse_a, n_b = EXP2_SCALE * g->inverse_b;
+#if MICA_FIRST_ORDER
+  const glint_turn turn = g->turn;
+#endif
   glint_density sum;
   for (int color = 0; color < MICA_GLINT_COLORS; ++color) sum.of_color[color] = zero;
   for (int angular = 0; angular < 4; ++angular) {
@@ -80,7 +86,13 @@ static inline glint_density sum_of_glints(private const glint_level* g) {
       const wave_float x = GLINT_LOW(bits.place, (float)di - g->x),
                        y = GLINT_HIGH(bits.place, (float)dj - g->y);
       const wave_float a = GLINT_LOW(bits.angle, from_a), b = GLINT_HIGH(bits.angle, from_b);
-      const wave_float p1 = fma(w1x, x, w1y * y), p2 = fma(w2x, x, w2y * y), p3 = n_a * a, p4 = n_b * b;
+      const wave_float p1 = fma(w1x, x, w1y * y), p2 = fma(w2x, x, w2y * y);
+#if MICA_FIRST_ORDER
+      const wave_float p3 = fma(n_a, a, -fma(turn.a1, p1, turn.a2 * p2));
+      const wave_float p4 = fma(n_b, b, -fma(turn.shear, n_a * a, fma(turn.b1, p1, turn.b2 * p2)));
+#else
+      const wave_float p3 = n_a * a, p4 = n_b * b;
+#endif
       const wave_float power = fma(-p1, p1, fma(-p2, p2, fma(-p3, p3, -p4 * p4)));
       const wave_float from_center_a = a + g->center_a, from_center_b = b + g->center_b;
       const wave_float center2 = fma(from_center_a, from_center_a, from_center_b * from_center_b);
@@ -124,10 +136,20 @@ static inline void add_level(private const glint_level* g, private glint_density
   const wave_float half_square = 0.5f * g->cells;
   const wave_float low_a = -half_square - g->center_a, high_a = half_square - g->center_a;
   const wave_float low_b = -half_square - g->center_b, high_b = half_square - g->center_b;
-  const wave_float square =
-      share_between(low_a, high_a, g->inverse_a) * share_between(low_b, high_b, g->inverse_b);
-  const wave_float cells = share_between(max(low_a, -g->a), min(high_a, 2.0f - g->a), g->inverse_a) *
-                           share_between(max(low_b, -g->b), min(high_b, 2.0f - g->b), g->inverse_b);
+#if MICA_FIRST_ORDER
+  const wave_float inverse_a = wave_reciprocal(g->turn.spread_a * g->cells),
+                   inverse_b = wave_reciprocal(g->turn.spread_b * g->cells);
+#else
+  const wave_float inverse_a = g->inverse_a, inverse_b = g->inverse_b;
+#endif
+  const wave_float square = share_between(low_a, high_a, inverse_a) * share_between(low_b, high_b, inverse_b);
+  const wave_float from_a = max(low_a, -g->a), to_a = min(high_a, 2.0f - g->a);
+  const wave_float from_b = max(low_b, -g->b), to_b = min(high_b, 2.0f - g->b);
+  wave_float cells = share_between(from_a, to_a, inverse_a) * share_between(from_b, to_b, inverse_b);
+#if MICA_FIRST_ORDER
+  cells += share_by_correlation(inverse_a * from_a, inverse_a * to_a, inverse_b * from_b, inverse_b * to_b,
+                                g->turn.tangent);
+#endif
   const wave_float expected = expected_weight * max(square - cells, 0.0f);
   const glint_density sum = sum_of_glints(g);
   for (int color = 0; color < MICA_GLINT_COLORS; ++color)
@@ -162,9 +184,6 @@ static inline void place_footprint(private glint_level* g, wave_int i, wave_int 
   }
   g->x = fraction_x - wave_to_float(below_x), g->y = fraction_y - wave_to_float(below_y);
 }
-
-#define GLINT_FLOAT(name) wave_load_float((global const float*)(fields + (name)*pitch + first))
-#define GLINT_INT(name) wave_load_int(fields + (name)*pitch + first)
 
 // A query on the finer of its two levels, but for its direction.
 typedef struct {

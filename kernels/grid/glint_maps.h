@@ -15,6 +15,7 @@
 #endif
 
 #define INVERSE_PI 0.318309886f
+#define INVERSE_TWO_PI 0.159154943f
 #define GLINT_DISK_AREA 0.785398163f  // |U|
 
 // A point of the unit square, and the smooth density D(h) per area of the disk of half vectors. D is zero off

@@ -3,6 +3,7 @@
 // Glints are points of space x disk: one, at random, in every cell of a 4D grid. A query looks at the 2x2
 // spatial and 2x2 angular cells around it on two levels of detail, and takes the expectation of all other
 // glints. One lane a query: no lane waits for another.
+// MICA_FIRST_ORDER 1: half vectors turn over the footprint, and lobes need not be round.
 
 #include "grid/glint_level.h"
 
@@ -13,11 +14,18 @@ WAVE_KERNEL void grid(global const int* restrict fields, int pitch, global float
   const glint_disk_point direction =
       glint_to_disk(GLINT_FLOAT(MICA_GLINT_HALF_S), GLINT_FLOAT(MICA_GLINT_HALF_T),
                     GLINT_FLOAT(MICA_GLINT_INVERSE_ALPHA_X), GLINT_FLOAT(MICA_GLINT_INVERSE_ALPHA_Y));
+  glint_level g;
+#if MICA_FIRST_ORDER
+  const wave_float sigma_a = GLINT_FLOAT(MICA_GLINT_LOBE_A), sigma_b = GLINT_FLOAT(MICA_GLINT_LOBE_B);
+  const wave_float smooth = GLINT_FLOAT(MICA_GLINT_DENSITY);
+  g.turn = load_turn(fields, pitch, first);
+#else
   const wave_float jacobian = max(GLINT_DISK_AREA * direction.density, 1e-20f);  // |J_T|, Eq. 3
   const wave_float stretch = jacobian * wave_rsqrt(jacobian);
   const wave_float sigma_a = GLINT_FLOAT(MICA_GLINT_MICRO_S) * stretch,
                    sigma_b = GLINT_FLOAT(MICA_GLINT_MICRO_T) * stretch;
-  glint_level g;
+  const wave_float smooth = direction.density;
+#endif
   glint_place p = load_footprint(fields, pitch, first, &g);
   glint_density sum;
   for (int color = 0; color < MICA_GLINT_COLORS; ++color) sum.of_color[color] = 0.0f;
@@ -28,7 +36,7 @@ WAVE_KERNEL void grid(global const int* restrict fields, int pitch, global float
     next_level(&p, &g);
   }
   for (int color = 0; color < MICA_GLINT_COLORS; ++color)
-    wave_store_float(direction.density * sum.of_color[color], density + color * pitch + first);
+    wave_store_float(smooth * sum.of_color[color], density + color * pitch + first);
 }
 
 // T and T^-1 for points given as pairs of rows of `pitch`, for tests. Out: x, y, D, or s, t.

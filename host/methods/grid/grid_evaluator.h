@@ -49,7 +49,9 @@ class GridEvaluator : public Evaluator {
   double device_seconds() const override { return *device_seconds_; }
 
  private:
-  void enqueue(GridBatch batch, std::size_t first, std::size_t count, PendingGrid* pending);
+  void enqueue(cl::Kernel* kernel, std::size_t begin, std::size_t end, PendingGrid* pending);
+  void enqueue_batch(cl::Kernel* kernel, GridBatch batch, std::size_t first, std::size_t count,
+                     PendingGrid* pending);
 
   Device& device_;
   GlintGrid grid_;
@@ -60,6 +62,7 @@ class GridEvaluator : public Evaluator {
   std::shared_ptr<double> device_seconds_ = std::make_shared<double>(0.0);
   std::shared_ptr<std::size_t> replaced_ = std::make_shared<std::size_t>(0);
   cl::Kernel kernel_;
+  std::optional<cl::Kernel> turned_;  // made for the first query that turns
 };
 
 }  // namespace mica::host

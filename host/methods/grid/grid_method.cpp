@@ -25,6 +25,7 @@ class GridMethod : public Method {
     MethodTraits traits;
     traits.map = false;
     traits.brdf = true;
+    traits.first_order = true;
     return traits;
   }
   std::unique_ptr<MethodSettings> settings() const override { return std::make_unique<GridSettings>(); }

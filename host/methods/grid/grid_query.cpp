@@ -10,14 +10,18 @@
 #include <cstring>
 #include <tuple>
 
+#include "host/methods/grid/glint_turn.h"
+#include "host/methods/map/turned_query.h"
+
 namespace mica::host {
 namespace {
 
 using namespace device_types;
 
-constexpr double kCellsASigma = 8;         // of the finer level, at the weight of one
-constexpr double kLeastSigma = 1.0 / 128;  // cells
-constexpr double kMaxLevel = 24;           // angular cells narrower than 2^-24 are beyond a float
+constexpr double kCellsASigma = 8;                  // of the finer level, at the weight of one
+constexpr double kLeastSigma = 1.0 / 128;           // cells
+constexpr double kLeastLobe = 1e-4, kMostLobe = 1;  // standard deviations of a glint's lobe
+constexpr double kMaxLevel = 24;                    // angular cells narrower than 2^-24 are beyond a float
 
 bool outside(double value, double low, double high) {
   return !(value >= low && value <= high);
@@ -27,7 +31,7 @@ bool outside(double value, double low, double high) {
 class Column {
  public:
   Column(GridBatch* batch, std::size_t n) : batch_(batch), n_(n) {}
-  void copy_previous() {
+  void copy_previous() {  // but for what a turn adds
     for (std::size_t field = 0; field < MICA_GLINT_FIELDS; ++field)
       batch_->fields[field * batch_->pitch + n_] = batch_->fields[field * batch_->pitch + n_ - 1];
   }
@@ -50,8 +54,9 @@ void set_cell(Column* column, int cell_field, int fraction_field, double cells) 
   column->set(fraction_field, std::min(cells - whole, 1 - 0x1p-24));
 }
 
-/// All but the half vector.
-void set_footprint(const Query& query, const GlintPoint& glints, Column* column) {
+/// All but the half vector, its turn and the lobe that a turned query has. Returns the footprint's axes, in
+/// the order of the rows of W: columns of one standard deviation each, in uv.
+Eigen::Matrix2d set_footprint(const Query& query, const GlintPoint& glints, Column* column) {
   // From uv to cells of level 0: A* with determinant one, then the resolution [Kem25 Algorithm 1].
   const double resolution = std::sqrt(double{glints.density}), stretch = std::sqrt(double{glints.stretch});
   const Eigen::Vector2d scale(resolution / stretch, resolution * stretch);
@@ -61,7 +66,7 @@ void set_footprint(const Query& query, const GlintPoint& glints, Column* column)
   const double middle = 0.5 * (xx + yy), difference = 0.5 * (xx - yy);
   const double major2 = middle + std::hypot(difference, xy);
   const double minor2 = major2 > 0 ? std::max((xx * yy - xy * xy) / major2, 0.0) : 0.0;
-  const double angle = 0.5 * std::atan2(xy, difference);
+  const double angle = 0.5 * std::atan2(xy, difference), cosine = std::cos(angle), sine = std::sin(angle);
 
   const double detail =
       std::clamp(0.5 * std::log2(kCellsASigma * kCellsASigma * std::max(major2, 1e-100)), 0.0, kMaxLevel);
@@ -77,10 +82,10 @@ void set_footprint(const Query& query, const GlintPoint& glints, Column* column)
 
   set_cell(column, MICA_GLINT_CELL_I, MICA_GLINT_FRACTION_X, query.footprint.mean_uv.x() * scale.x() * cell);
   set_cell(column, MICA_GLINT_CELL_J, MICA_GLINT_FRACTION_Y, query.footprint.mean_uv.y() * scale.y() * cell);
-  column->set(MICA_GLINT_WHITEN_1X, std::cos(angle) * inverse_major);
-  column->set(MICA_GLINT_WHITEN_1Y, std::sin(angle) * inverse_major);
-  column->set(MICA_GLINT_WHITEN_2X, -std::sin(angle) * inverse_minor);
-  column->set(MICA_GLINT_WHITEN_2Y, std::cos(angle) * inverse_minor);
+  column->set(MICA_GLINT_WHITEN_1X, cosine * inverse_major);
+  column->set(MICA_GLINT_WHITEN_1Y, sine * inverse_major);
+  column->set(MICA_GLINT_WHITEN_2X, -sine * inverse_minor);
+  column->set(MICA_GLINT_WHITEN_2Y, cosine * inverse_minor);
   column->set(MICA_GLINT_LEVEL, level);
   column->set(MICA_GLINT_WEIGHT, 1 - (detail - level));
   column->set(MICA_GLINT_INVERSE_ALPHA_X, 1.0 / glints.alpha_x);
@@ -91,6 +96,26 @@ void set_footprint(const Query& query, const GlintPoint& glints, Column* column)
   column->set(MICA_GLINT_SHARE, double{glints.share});
   column->set(MICA_GLINT_PRESENCE, double{glints.share} * glints.kept);
   column->set(MICA_GLINT_BRIGHTNESS, 1.0 / glints.kept);
+  Eigen::Matrix2d axes;
+  axes << cosine, -sine, sine, cosine;
+  return scale.cwiseInverse().asDiagonal() * axes *
+         Eigen::Vector2d(std::sqrt(major2), std::sqrt(minor2)).asDiagonal();
+}
+
+void set_turn(const Query& query, const GlintPoint& glints, const Eigen::Matrix2d& axes, Column* column) {
+  const GlintTurn turn = glint_turn(query, glints, axes);
+  column->set(MICA_GLINT_LOBE_A, turn.lobe(0, 0));
+  column->set(MICA_GLINT_LOBE_B, turn.lobe(1, 1));
+  column->set(MICA_GLINT_LOBE_SHEAR, turn.lobe(1, 0) / turn.lobe(1, 1));
+  column->set(MICA_GLINT_TURN_A1, turn.turn(0, 0));
+  column->set(MICA_GLINT_TURN_A2, turn.turn(0, 1));
+  column->set(MICA_GLINT_TURN_B1, turn.turn(1, 0));
+  column->set(MICA_GLINT_TURN_B2, turn.turn(1, 1));
+  column->set(MICA_GLINT_SPREAD_A, turn.spread.x());
+  column->set(MICA_GLINT_SPREAD_B, turn.spread.y());
+  const double cosine = std::sqrt((1 - turn.correlation) * (1 + turn.correlation));
+  column->set(MICA_GLINT_SPREAD_TANGENT, turn.correlation / (1 + cosine));
+  column->set(MICA_GLINT_DENSITY, turn.smooth_density);
 }
 
 /// Whether two queries differ at most in their half vectors, as those of one footprint to many lights do.
@@ -136,18 +161,17 @@ std::string grid_query_problem(const Query& query) {
   if (scale > 1e14) return "covariance is above 1e14";
   if (!query.half_vector.allFinite() || query.half_vector.cwiseAbs().maxCoeff() > 1)
     return "half vector is outside of [-1, 1]^2";
-  if (query.lobe_cov || has_first_order(query))
-    return "grid takes no turn of the half vector and no covariance of the lobe";
-  if (outside(query.roughness, 1e-4, 1))
+  if (!query.lobe_cov && outside(query.roughness, kLeastLobe, kMostLobe))
     return fmt::format("roughness {} is outside of 1e-4 to 1", query.roughness);
-  return "";
+  const std::string problem = query.lobe_cov ? lobe_problem(query, kLeastLobe, kMostLobe) : "";
+  return problem.empty() ? turn_problem(query) : problem;
 }
 
 GridBatch to_grid_batch(const std::vector<Query>& queries, std::size_t first, std::size_t count,
-                        const std::vector<GlintPoint>& points) {
+                        const std::vector<GlintPoint>& points, bool turned) {
   GridBatch batch;
   batch.pitch = (count + MICA_GLINT_PADDING - 1) / MICA_GLINT_PADDING * MICA_GLINT_PADDING;
-  batch.fields.resize(MICA_GLINT_FIELDS * batch.pitch);
+  batch.fields.resize((turned ? MICA_GLINT_TURNED_FIELDS : MICA_GLINT_FIELDS) * batch.pitch);
   const Query padding;
   const auto query_of = [&](std::size_t n) -> const Query& {
     return n < count ? queries[first + n] : padding;
@@ -156,6 +180,7 @@ GridBatch to_grid_batch(const std::vector<Query>& queries, std::size_t first, st
     return points.size() == 1 || n >= count ? points.front() : points[first + n];
   };
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, batch.pitch), [&](const auto& range) {
+    Eigen::Matrix2d axes;
     for (std::size_t n = range.begin(); n < range.end(); ++n) {
       const Query& query = query_of(n);
       Column column(&batch, n);
@@ -163,8 +188,9 @@ GridBatch to_grid_batch(const std::vector<Query>& queries, std::size_t first, st
           are_same(glints_of(n), glints_of(n - 1))) {
         column.copy_previous();
       } else {
-        set_footprint(query, glints_of(n), &column);
+        axes = set_footprint(query, glints_of(n), &column);
       }
+      if (turned) set_turn(query, glints_of(n), axes, &column);
       column.set(MICA_GLINT_HALF_S, query.half_vector.x());
       column.set(MICA_GLINT_HALF_T, query.half_vector.y());
     }

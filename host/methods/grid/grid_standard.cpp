@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "host/methods/map/turned_query.h"
+
 namespace mica::host {
 
 GridStandard::GridStandard(const GlintGrid& grid) : density_(grid.density) {
@@ -46,7 +48,7 @@ std::string GridStandard::limitation(const std::vector<std::vector<Query>>&, con
                        worst_error);
   if (level_of(worst) >= narrow_cell)
     return fmt::format("angular cells are narrower than 2^-12: {:.3g} times the bound", worst_error);
-  if (worst.roughness < narrow_lobe)
+  if (lobe_axes(worst).sigma.minCoeff() < narrow_lobe)
     return fmt::format("lobes of glints are narrower than 5e-3: {:.3g} times the bound", worst_error);
   return "";
 }

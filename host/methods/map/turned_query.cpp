@@ -56,22 +56,32 @@ Query without_needless_periods(const Query& query) {
   return result;
 }
 
-std::string first_order_problem(const Query& query, int map_width, int map_height) {
-  const Eigen::Matrix2d lobe = lobe_covariance(query), &turn = query.half_vector_turn;
+std::string lobe_problem(const Query& query, double least, double most) {
+  const Eigen::Matrix2d lobe = lobe_covariance(query);
   if (!lobe.allFinite() || lobe(0, 1) != lobe(1, 0)) return "lobe is not finite and symmetric";
   if (!(lobe(0, 0) > 0 && lobe(1, 1) > 0)) return "lobe is not positive definite";
   const FootprintAxes axes = footprint_axes({Eigen::Vector2d::Zero(), lobe}, 1, 1);
   if (!(axes.sigma_minor_texels > 0)) return "lobe is not positive definite";
-  if (!(axes.sigma_minor_texels >= kMinRoughness * (1 - 1e-9) &&
-        axes.sigma_major_texels <= kMaxRoughness * (1 + 1e-9)))
-    return fmt::format("lobe of {:.3g} x {:.3g} (standard deviations) is outside [{}, {}]",
-                       axes.sigma_major_texels, axes.sigma_minor_texels, kMinRoughness, kMaxRoughness);
+  if (axes.sigma_minor_texels >= least * (1 - 1e-9) && axes.sigma_major_texels <= most * (1 + 1e-9))
+    return {};
+  return fmt::format("lobe of {:.3g} x {:.3g} (standard deviations) is outside [{}, {}]",
+                     axes.sigma_major_texels, axes.sigma_minor_texels, least, most);
+}
+
+std::string turn_problem(const Query& query) {
+  const Eigen::Matrix2d& turn = query.half_vector_turn;
   if (!turn.allFinite()) return "turn of the half vector is not finite";
   if (turn.isZero(0)) return {};
   const double most = std::sqrt(largest_eigenvalue(turn * query.footprint.cov_uv * turn.transpose()));
-  if (!(most <= kMaxTurn))
-    return fmt::format("half vector turns by {:.3g} over the footprint's standard deviation, more than {}",
-                       most, kMaxTurn);
+  if (most <= kMaxTurn) return {};
+  return fmt::format("half vector turns by {:.3g} over the footprint's standard deviation, more than {}",
+                     most, kMaxTurn);
+}
+
+std::string first_order_problem(const Query& query, int map_width, int map_height) {
+  std::string problem = lobe_problem(query, kMinRoughness, kMaxRoughness);
+  if (problem.empty()) problem = turn_problem(query);
+  if (!problem.empty() || query.half_vector_turn.isZero(0)) return problem;
   const FootprintAxes needed =
       footprint_axes(without_needless_periods(query).footprint, map_width, map_height);
   if (!(needed.sigma_major_texels <= kMaxTurnedSigmaTexels))

@@ -14,6 +14,13 @@ namespace mica::host {
 /// @param query of which the footprint is known to be good.
 std::string first_order_problem(const Query& query, int map_width, int map_height);
 
+/// Why a query's lobe is none, or empty when it is one whose standard deviations along its axes lie in
+/// [least, most].
+std::string lobe_problem(const Query& query, double least, double most);
+/// Why a query's half vector cannot turn as it does, or empty: it is finite, and turns by at most 2 over the
+/// footprint's standard deviation.
+std::string turn_problem(const Query& query);
+
 /// A query with the same answer on a periodic map, and a footprint that is no wider than it has to be.
 Query without_needless_periods(const Query& query);
 
