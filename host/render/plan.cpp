@@ -168,11 +168,16 @@ void check_long_lobes(const Job& job) {
   }
 }
 
+/// Whether small footprints show something else than large ones: other glints, or a patch of its own.
+bool has_no_limit(const PlannedEvaluator& planned) {
+  return planned.patch_brdf || planned.surface_index < 0;
+}
+
 }  // namespace
 
 bool can_audit_pixels(const Plan& plan) {
   return !plan.gathers_light && std::none_of(plan.evaluators.begin(), plan.evaluators.end(),
-                                             [](const PlannedEvaluator& e) { return e.patch_brdf; });
+                                             [](const PlannedEvaluator& e) { return has_no_limit(e); });
 }
 
 const Method& method_of(const Job& job, const PlannedEvaluator& planned) {
@@ -196,8 +201,12 @@ Plan make_plan(const Job& job) {
   plan.channels = channels_of(job.image.aovs);
   check_estimates(job, plan);
   plan.warnings = missing_densities(job, plan);
-  if (job.audit.pixels > 0 && plan.gathers_light)
-    plan.warnings.emplace_back("[audit] draws no pixels where light is gathered from all around");
+  if (job.audit.pixels > 0 && !can_audit_pixels(plan))
+    plan.warnings.emplace_back(
+        plan.gathers_light
+            ? "[audit] draws no pixels where light is gathered from all around"
+            : "[audit] draws no pixels where small footprints show something else than large ones: "
+              "of a patch's BRDF, and of glints without a map");
   plan.queries_a_batch = kQueriesABatch;
   const std::size_t queries_a_row = samples_a_row(job) * std::max<std::size_t>(job.scene.lights.size(), 1);
   // Fewer would trace too much twice: what pixels see of the rows around a block.

@@ -49,7 +49,8 @@ struct Plan {
 Plan make_plan(const Job& job);
 
 /// Whether pixels can be integrated again: not where light is gathered by sampling, whose noise would be all
-/// that is seen, nor where lamps are multiplied with the BRDF of a patch, which has no limit of small ones.
+/// that is seen, nor where small footprints do not add up to large ones: those of a patch's BRDF, and of
+/// glints without a map, of which each size sees its own.
 bool can_audit_pixels(const Plan& plan);
 
 /// The plan in words, a line an item.
