@@ -20,12 +20,23 @@ namespace {
 /// 0.23.
 constexpr double kMostPenumbraResidual = 0.12;
 
+/// Of the lamps that a pixel sees, those that samples may stand for, each for itself, while a fit does for
+/// the others. Where there are more of them all of the pixel is sampled, and refined where it is in doubt.
+constexpr double kMostSampledLamps = 0.25;
+
 /// What a fitted pixel shows; unset: it needs samples.
 struct FittedPixel {
   Color radiance = Color::Zero();
   std::optional<Footprint> footprint;  ///< of a shape
   Eigen::Vector3d normal{0, 0, 0};
   std::vector<GlintQuery> queries;
+  std::vector<std::uint32_t> sampled_lamps;  ///< that need samples, in order
+};
+
+/// The lamps that samples are taken of.
+struct WantedLamps {
+  bool all = false;
+  std::vector<std::uint32_t> some;  ///< in order
 };
 
 /// All steps of a block of rows. Rows and columns count from the block's first pixel.
@@ -89,7 +100,10 @@ class BlockTracer {
   void place_samples();
   void write_fits(int row, RowQueries* queries);
   void sample_row(int row, RowQueries* queries);
+  WantedLamps wanted_lamps(int row, int column) const;
   void sample_cell(int row, int column, std::uint32_t first_sample, RowQueries* queries);
+  void own_lamps(int row, int column, std::size_t first_glint, RowQueries* queries);
+  std::vector<SeenPoint> look(const Viewer& viewer, int row, int column) const;
   std::vector<std::vector<Eigen::Matrix2d>> turns_of(const std::vector<SeenPoint>& points) const;
   bool has_fit(int row, int column) const {
     return row >= first_seen_ && row < end_seen_ && column >= 0 && column < width_ &&
@@ -109,8 +123,31 @@ class BlockTracer {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(width_) +
            static_cast<std::size_t>(column);
   }
+  bool is_of_block(int row, int column) const {
+    return row >= 0 && row < rows_.row_count && column >= 0 && column < width_;
+  }
+  std::vector<LightDescription> lights_of(const std::vector<std::uint32_t>& lamps) const {
+    std::vector<LightDescription> lights;
+    for (const std::uint32_t lamp : lamps) lights.push_back(viewer_.lights[lamp]);
+    return lights;
+  }
   bool is_sampled(int row, int column) const {
     return row >= first_seen_ && row < end_seen_ && column >= 0 && column < width_ && !has_fit(row, column);
+  }
+  bool samples_lamps(int row, int column) const {
+    return has_fit(row, column) && !fits_.at(row, column)->sampled_lamps.empty();
+  }
+  /// Calls visit(row, column) for pixels that see what lies in one, and says whether any returned true. What
+  /// lies outside of the block is there for the block alone.
+  template <typename Visit>
+  bool any_around(int row, int column, const Visit& visit) const {
+    const bool of_block = row >= 0 && row < rows_.row_count;
+    for (int other = row - sampled_around_; other <= row + sampled_around_; ++other) {
+      if (!of_block && (other < 0 || other >= rows_.row_count)) continue;
+      for (int right = -sampled_around_; right <= sampled_around_; ++right)
+        if (visit(other, column + right)) return true;
+    }
+    return false;
   }
 
   const Viewer& viewer_;
@@ -145,37 +182,38 @@ std::optional<FittedPixel> BlockTracer::fit(int row, int column) const {
   const ProbesOfFit probes = probes_->of_fit(row, column);
   const PixelFit fitted(stencil, probes, repeating_steps(stencil, probes));
   FittedPixel pixel;
-  pixel.radiance = fitted.radiance(few_);
-  if (!hit) return pixel;
+  if (!hit) {
+    pixel.radiance = fitted.radiance(few_);
+    return pixel;
+  }
   pixel.footprint = fitted.footprint(few_);
   pixel.normal = middle.normal;
   const FitLimits limits{pixels_.tolerance, std::max(1, pixels_.subpixels * pixels_.subpixels)};
-  for (std::size_t lamp = 0; lamp < middle.lamps.size(); ++lamp) {
-    if (!fitted.sees(lamp)) continue;
-    if (fitted.penumbra_residual(lamp) > kMostPenumbraResidual ||
-        !fitted.ask(lamp, few_, limits, &pixel.queries))
+  const std::vector<bool> edges = probes_->edges(row, column);
+  std::size_t seen = 0;
+  for (std::size_t lamp = 0; lamp < edges.size(); ++lamp) seen += edges[lamp] || fitted.sees(lamp) ? 1 : 0;
+  for (std::size_t lamp = 0; lamp < edges.size(); ++lamp) {
+    if (!edges[lamp] && (!fitted.sees(lamp) || (fitted.penumbra_residual(lamp) <= kMostPenumbraResidual &&
+                                                fitted.ask(lamp, few_, limits, &pixel.queries))))
+      continue;
+    pixel.sampled_lamps.push_back(static_cast<std::uint32_t>(lamp));
+    if (static_cast<double>(pixel.sampled_lamps.size()) > kMostSampledLamps * static_cast<double>(seen))
       return std::nullopt;
   }
+  pixel.radiance = fitted.radiance(few_, pixel.sampled_lamps);
   for (GlintQuery& query : pixel.queries) query.material = middle.material;
   return pixel;
 }
 
-/// Pixels without a fit need the samples of all pixels that their filter reaches.
+/// Pixels without a fit need the samples of all pixels that their filter reaches; with one, of some lamps.
 void BlockTracer::place_samples() {
-  const int around = sampled_around_;
   Lattice& lattice = rows_.lattice;
   lattice.first_sample.assign(lattice.cell(rows_.row_count + margin_, -margin_), Lattice::kNone);
   std::uint32_t count = 0;
   for (int row = -margin_; row < rows_.row_count + margin_; ++row)
     for (int column = -margin_; column < width_ + margin_; ++column) {
-      bool needed = false;
-      for (int down = -around; down <= around && !needed; ++down)
-        for (int right = -around; right <= around && !needed; ++right) {
-          const bool of_block = row >= 0 && row < rows_.row_count;
-          // What lies outside of the block is there for the block alone.
-          const int other = row + down;
-          needed = (of_block || (other >= 0 && other < rows_.row_count)) && is_sampled(other, column + right);
-        }
+      const bool needed =
+          any_around(row, column, [&](int y, int x) { return is_sampled(y, x) || samples_lamps(y, x); });
       if (!needed) continue;
       lattice.first_sample[lattice.cell(row, column)] = count;
       count += static_cast<std::uint32_t>(pixels_.subpixels * pixels_.subpixels);
@@ -190,6 +228,7 @@ void BlockTracer::write_fits(int row, RowQueries* queries) {
     const std::size_t pixel = pixel_of(row, column);
     rows_.fitted[pixel] = 1;
     rows_.radiance[pixel] = fitted->radiance.cast<float>();
+    rows_.sampled_lamps[pixel] = fitted->sampled_lamps;
     PixelMeans means;
     if (fitted->footprint) means.add(*fitted->footprint, fitted->normal);
     means.write(&rows_, pixel);
@@ -208,7 +247,21 @@ void BlockTracer::sample_row(int row, RowQueries* queries) {
   }
 }
 
-void BlockTracer::sample_cell(int row, int column, std::uint32_t first_sample, RowQueries* queries) {
+WantedLamps BlockTracer::wanted_lamps(int row, int column) const {
+  WantedLamps wanted;
+  std::vector<bool> some(viewer_.lights.size(), false);
+  any_around(row, column, [&](int y, int x) {
+    wanted.all = wanted.all || is_sampled(y, x);
+    if (samples_lamps(y, x))
+      for (const std::uint32_t lamp : fits_.at(y, x)->sampled_lamps) some[lamp] = true;
+    return false;
+  });
+  for (std::uint32_t lamp = 0; lamp < some.size(); ++lamp)
+    if (some[lamp]) wanted.some.push_back(lamp);
+  return wanted;
+}
+
+std::vector<SeenPoint> BlockTracer::look(const Viewer& viewer, int row, int column) const {
   const int n = pixels_.subpixels;
   std::vector<SeenPoint> points;
   for (int k = 0; k < n * n; ++k) {
@@ -217,16 +270,23 @@ void BlockTracer::sample_cell(int row, int column, std::uint32_t first_sample, R
       points.emplace_back();
       continue;
     }
-    points.push_back(viewer_.look(first_column_ + column + (right + 0.5) / n,
-                                  first_row_ + row + (down + 0.5) / n,
-                                  {light_sample(key(row, column), k, n)}));
+    points.push_back(viewer.look(first_column_ + column + (right + 0.5) / n,
+                                 first_row_ + row + (down + 0.5) / n,
+                                 {light_sample(key(row, column), k, n)}));
   }
+  return points;
+}
+
+void BlockTracer::sample_cell(int row, int column, std::uint32_t first_sample, RowQueries* queries) {
+  const WantedLamps wanted = wanted_lamps(row, column);
+  Viewer viewer = viewer_;
+  if (!wanted.all) viewer.lights = lights_of(wanted.some);
+  const std::vector<SeenPoint> points = look(viewer, row, column);
   const std::vector<std::vector<Eigen::Matrix2d>> turns = turns_of(points);
   // A pixel that was fitted has queries of its own: samples in it are there for its neighbours.
-  const bool owned =
-      row >= 0 && row < rows_.row_count && column >= 0 && column < width_ && !has_fit(row, column);
-  const auto pixel = owned ? static_cast<std::uint32_t>(row * width_ + column) : GlintQuery::kNone;
-  const std::size_t before = queries->size();
+  const bool owned = is_of_block(row, column) && !has_fit(row, column);
+  const auto pixel = owned ? static_cast<std::uint32_t>(pixel_of(row, column)) : GlintQuery::kNone;
+  const std::size_t before = queries->size(), first_glint = queries->glints.size();
   PixelMeans means;
   for (std::size_t k = 0; k < points.size(); ++k) {
     const SeenPoint& point = points[k];
@@ -234,14 +294,35 @@ void BlockTracer::sample_cell(int row, int column, std::uint32_t first_sample, R
     rows_.sample_radiance[sample] = point.radiance.cast<float>();
     if (!point.hit) continue;
     means.add({wrap(point.uv), footprint_covariance(point.duv, lattice_filter_.sigma_pixels)}, point.frame.z);
-    if (point.faces_eye)
-      viewer_.ask(point, lattice_filter_.sigma_pixels,
-                  {pixel, sample, key(row, column), static_cast<std::uint32_t>(k)}, turns[k], queries);
+    if (!point.faces_eye) continue;
+    viewer.ask(point, lattice_filter_.sigma_pixels,
+               {pixel, sample, key(row, column), static_cast<std::uint32_t>(k)}, turns[k], queries);
+    for (std::size_t n = 0; n < wanted.some.size(); ++n) {
+      const SeenLamp& lamp = point.lamps[wanted.all ? wanted.some[n] : n];
+      if (lamp.visible > 0)
+        queries->lamp_samples.push_back(
+            {sample, wanted.some[n], lamp.seen.smooth.cwiseProduct(lamp.incident.irradiance).cast<float>()});
+    }
   }
+  for (std::size_t n = first_glint; n < queries->glints.size() && !wanted.all; ++n)
+    queries->glints[n].light = wanted.some[queries->glints[n].light];
+  if (samples_lamps(row, column) && is_of_block(row, column)) own_lamps(row, column, first_glint, queries);
   if (!owned) return;
   means.write(&rows_, pixel);
   rows_.query_count[pixel] =
       static_cast<std::uint16_t>(std::min<std::size_t>(queries->size() - before, 65535));
+}
+
+/// Samples of a fitted pixel belong to it where they are of lamps that it needs them of.
+void BlockTracer::own_lamps(int row, int column, std::size_t first_glint, RowQueries* queries) {
+  const std::vector<std::uint32_t>& lamps = fits_.at(row, column)->sampled_lamps;
+  const std::size_t pixel = pixel_of(row, column);
+  for (std::size_t n = first_glint; n < queries->glints.size(); ++n) {
+    GlintQuery& query = queries->glints[n];
+    if (!std::binary_search(lamps.begin(), lamps.end(), query.light)) continue;
+    query.pixel = static_cast<std::uint32_t>(pixel);
+    if (rows_.query_count[pixel] < 65535) ++rows_.query_count[pixel];
+  }
 }
 
 /// A lamp's half vector's change a pixel to the right and down, at point k of a pixel of n x n: by
