@@ -72,11 +72,13 @@ void evaluate_rows(const BuiltJob& built, const RowRange& rows, const RenderProg
            wants_errors ? estimate_errors(built, in_flight->rows(), densities) : std::vector<float>());
       offer(in_flight->rows(), densities, built.plan(), built.job().image.width, sampler);
       result->queries += densities.size();
+      result->dropped_queries += in_flight->dropped();
       progress(in_flight->rows().first_row + in_flight->rows().row_count - rows.first, rows.count);
     }
     in_flight = std::move(next);
   }
   result->refined_pixels = refinement.refined_pixels();
+  result->dropped_queries += refinement.dropped_queries();
   result->seconds.render = total.seconds();
 }
 

@@ -120,11 +120,13 @@ class Scene {
   /// @param pixels without fits; of any number of subpixels.
   TracedRows trace_pixel(int row, int column, const PixelSettings& pixels) const;
 
-  /// Samples what some pixels of rows see in themselves and in the pixels around them.
-  /// @param which of the rows' pixels; all stay black, but for their samples.
+  /// Takes samples of rows; their pixels stay black. A sample does not depend on which others are taken.
+  /// @param chosen by the cells of the lattice of `pixels`.
   /// @param pixels without fits; of any number of subpixels.
-  TracedRows sample(int first_row, int row_count, const std::vector<bool>& which,
+  TracedRows sample(int first_row, int row_count, const Lattice::Choice& chosen,
                     const PixelSettings& pixels) const;
+  /// The lattice of rows of the image, without samples.
+  Lattice lattice(const PixelSettings& pixels) const;
 
   const Viewer& viewer() const;
   const PixelSettings& pixels() const;

@@ -62,14 +62,9 @@ class BlockTracer {
     return take_samples();
   }
 
-  /// @param which pixels need samples.
-  TracedRows sample(const std::vector<bool>& which) {
-    for (int row = first_seen_; row < end_seen_; ++row)
-      for (int column = 0; column < width_; ++column) {
-        const bool of_rows = row >= 0 && row < rows_.row_count;
-        if (!of_rows || !which[pixel_of(row, column)]) fits_.at(row, column).emplace();
-      }
-    sampled_around_ = std::min(margin_, 1);
+  /// @param chosen by cell of the lattice.
+  TracedRows sample(const Lattice::Choice& chosen) {
+    chosen_ = &chosen;
     return take_samples();
   }
 
@@ -118,6 +113,16 @@ class BlockTracer {
     const int first = margin_ * pixels_.subpixels;
     return counts(down + first) && counts(right + first);
   }
+  bool is_chosen(int row, int column, int k) const {
+    return !chosen_ || (*chosen_)[rows_.lattice.cell(row, column)][static_cast<std::size_t>(k)];
+  }
+  /// Whether a sample or one next to it in its pixel is: half vectors turn from one to the next.
+  bool is_near_chosen(int row, int column, int k) const {
+    const int n = pixels_.subpixels, right = k % n, down = k / n;
+    return is_chosen(row, column, k) || (right > 0 && is_chosen(row, column, k - 1)) ||
+           (right + 1 < n && is_chosen(row, column, k + 1)) || (down > 0 && is_chosen(row, column, k - n)) ||
+           (down + 1 < n && is_chosen(row, column, k + n));
+  }
   /// Of one of the block's rows.
   std::size_t pixel_of(int row, int column) const {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(width_) +
@@ -142,9 +147,9 @@ class BlockTracer {
   template <typename Visit>
   bool any_around(int row, int column, const Visit& visit) const {
     const bool of_block = row >= 0 && row < rows_.row_count;
-    for (int other = row - sampled_around_; other <= row + sampled_around_; ++other) {
+    for (int other = row - margin_; other <= row + margin_; ++other) {
       if (!of_block && (other < 0 || other >= rows_.row_count)) continue;
-      for (int right = -sampled_around_; right <= sampled_around_; ++right)
+      for (int right = -margin_; right <= margin_; ++right)
         if (visit(other, column + right)) return true;
     }
     return false;
@@ -156,8 +161,8 @@ class BlockTracer {
   const FilterSum lattice_filter_ = pixels_.filter.on_lattice(pixels_.subpixels);
   const FilterSum few_ = pixels_.filter.by_few();
   const int margin_ = pixels_.filter.margin_pixels(), reach_ = std::max(margin_, 1);
-  int sampled_around_ = margin_;     // pixels about one that needs samples
-  const int first_seen_, end_seen_;  // pixels of the image that the block has to know of
+  const Lattice::Choice* chosen_ = nullptr;  // the only samples that are taken
+  const int first_seen_, end_seen_;          // pixels of the image that the block has to know of
   TracedRows rows_;
   Fits fits_;
   std::optional<PixelProbes> probes_;
@@ -248,7 +253,8 @@ void BlockTracer::sample_row(int row, RowQueries* queries) {
 }
 
 WantedLamps BlockTracer::wanted_lamps(int row, int column) const {
-  WantedLamps wanted;
+  WantedLamps wanted{chosen_ != nullptr, {}};
+  if (wanted.all) return wanted;
   std::vector<bool> some(viewer_.lights.size(), false);
   any_around(row, column, [&](int y, int x) {
     wanted.all = wanted.all || is_sampled(y, x);
@@ -266,7 +272,7 @@ std::vector<SeenPoint> BlockTracer::look(const Viewer& viewer, int row, int colu
   std::vector<SeenPoint> points;
   for (int k = 0; k < n * n; ++k) {
     const int right = k % n, down = k / n;
-    if (!is_seen(row * n + down, column * n + right)) {
+    if (!is_seen(row * n + down, column * n + right) || !is_near_chosen(row, column, k)) {
       points.emplace_back();
       continue;
     }
@@ -292,7 +298,7 @@ void BlockTracer::sample_cell(int row, int column, std::uint32_t first_sample, R
     const SeenPoint& point = points[k];
     const auto sample = first_sample + static_cast<std::uint32_t>(k);
     rows_.sample_radiance[sample] = point.radiance.cast<float>();
-    if (!point.hit) continue;
+    if (!point.hit || !is_chosen(row, column, static_cast<int>(k))) continue;
     means.add({wrap(point.uv), footprint_covariance(point.duv, lattice_filter_.sigma_pixels)}, point.frame.z);
     if (!point.faces_eye) continue;
     viewer.ask(point, lattice_filter_.sigma_pixels,
@@ -385,8 +391,8 @@ TracedRows trace_rows(const Viewer& viewer, const PixelSettings& pixels, const I
 }
 
 TracedRows sample_rows(const Viewer& viewer, const PixelSettings& pixels, const ImagePart& part,
-                       const std::vector<bool>& which) {
-  return BlockTracer(viewer, pixels, part).sample(which);
+                       const Lattice::Choice& chosen) {
+  return BlockTracer(viewer, pixels, part).sample(chosen);
 }
 
 }  // namespace mica::host

@@ -1,0 +1,115 @@
+// Pictures of many lamps, of which each has edges elsewhere, against the sum of the pictures of each lamp.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "host/base/error_norms.h"
+#include "host/base/random.h"
+#include "host/job/job.h"
+#include "host/render/render.h"
+#include "tests/temporary_path.h"
+
+namespace mica::host::many_lamps_test {
+namespace {
+
+constexpr int kSide = 32;
+using Place = std::array<double, 3>;
+
+/// A bowl, whose rim throws shadows on what is behind it.
+std::string job_of(const std::vector<Place>& lamps) {
+  const std::string path = temporary_path("many_lamps_test.toml");
+  std::ofstream file(path);
+  file << R"(
+image = { width = 32, height = 32, subpixels = 4 }
+camera = { position = [0, -3.2, 1.4], look_at = [0, 0, 0.45], fov = 12 }
+surface.m = { generate = "spectrum", resolution = 256, rms_slope = 0.3, correlation = 8, seed = 1 }
+material.a = { surface = "m", repeat = [2, 2], roughness = 0.02, diffuse = [0.2, 0.1, 0.3] }
+shape = [{ type = "shell", material = "a" }]
+)";
+  for (const Place& p : lamps)
+    file << "[[light]]\ntype = \"point\"\nintensity = [5, 4, 3]\nposition = [" << p[0] << ", " << p[1] << ", "
+         << p[2] << "]\n";
+  return path;
+}
+
+RenderResult render_job(const std::vector<Place>& lamps, int rows_a_block = kSide) {
+  const Job job = load_job(job_of(lamps), {});
+  Plan plan = make_plan(job);
+  plan.rows_a_block = rows_a_block;
+  Device device(0);
+  return render(job, plan, device, [](int, int) {});
+}
+
+std::vector<Place> places(int count) {
+  std::vector<Place> lamps;
+  const auto random = [](int n, std::uint64_t axis) {
+    return random_unit(1, 2, 3 * static_cast<std::uint64_t>(n) + axis);
+  };
+  for (int n = 0; n < count; ++n)
+    lamps.push_back({6 * random(n, 0) - 3, -4 + 3 * random(n, 1), 1 + 3 * random(n, 2)});
+  return lamps;
+}
+
+std::vector<float> sum(std::vector<float> a, const std::vector<float>& b) {
+  for (std::size_t n = 0; n < a.size(); ++n) a[n] += b[n];
+  return a;
+}
+
+std::vector<float> sum_of_pictures(const std::vector<Place>& lamps) {
+  std::vector<float> all(3 * kSide * kSide, 0.0f);
+  for (const Place& lamp : lamps) all = sum(all, render_job({lamp}).image.pixels);
+  return all;
+}
+
+TEST(ManyLamps, AreTheSumOfEach) {
+  const std::vector<Place> lamps = places(64);
+  const RenderResult together = render_job(lamps);
+  const double off = relative_l2(together.image.pixels, sum_of_pictures(lamps));
+  std::printf("64 lamps: relative L2 %.4f, %zu queries\n", off, together.queries);
+  EXPECT_LT(off, 0.01);
+}
+
+/// Edges of some lamps do not make samples of all others.
+TEST(ManyLamps, NeedNoMoreQueriesThanEachAlone) {
+  const std::vector<Place> lamps = places(16);
+  std::size_t alone = 0;
+  for (const Place& lamp : lamps) alone += render_job({lamp}).queries;
+  const std::size_t together = render_job(lamps).queries;
+  std::printf("16 lamps: %zu queries, alone %zu\n", together, alone);
+  EXPECT_LT(static_cast<double>(together), 1.25 * static_cast<double>(alone));
+}
+
+TEST(ManyLamps, DoNotDependOnBlocks) {
+  const std::vector<Place> lamps = places(8);
+  const RenderResult whole = render_job(lamps);
+  for (const int rows : {1, 7}) EXPECT_EQ(render_job(lamps, rows).image.pixels, whole.image.pixels) << rows;
+}
+
+/// A lamp passes others: pixels change from fits to samples and back, and none of it is seen.
+TEST(ManyLamps, OfWhichOnePassesDoNotFlicker) {
+  const std::vector<Place> others = places(8);
+  const std::vector<float> lit_by_others = sum_of_pictures(others);
+  std::vector<float> before;
+  for (int frame = 0; frame < 24; ++frame) {
+    const Place passing = {-2 + frame / 6.0, -3, 2.5};
+    std::vector<Place> lamps = others;
+    lamps.push_back(passing);
+    const std::vector<float> reference = sum(lit_by_others, render_job({passing}).image.pixels);
+    std::vector<float> off = render_job(lamps).image.pixels;
+    double change = 0, light = 0;
+    for (std::size_t n = 0; n < off.size(); ++n) {
+      off[n] -= reference[n];
+      change += before.empty() ? 0 : std::pow(off[n] - before[n], 2);
+      light += std::pow(reference[n], 2);
+    }
+    EXPECT_LT(std::sqrt(change / light), 0.01) << frame;
+    before = off;
+  }
+}
+
+}  // namespace
+}  // namespace mica::host::many_lamps_test
