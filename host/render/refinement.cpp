@@ -23,7 +23,7 @@ constexpr double kChangeOfTolerance = 4, kWidth = 160;
 constexpr double kChangeOfDoubt = 1.0 / 3;
 /// Of the change of a pixel that may stay, what a sample's may be: a dozen of them lie along an edge, and the
 /// truth of each is somewhere between itself and the sample across the edge.
-constexpr double kUnevenOfChange = 0.25;
+constexpr double kUnevenOfChange = 0.02;
 
 using Colors = std::vector<Eigen::Vector3d>;
 
@@ -262,10 +262,10 @@ std::size_t Refinement::refine(TracedRows* rows, const std::vector<float>& densi
   for (const int finest = kFinestBy * pixels.subpixels; pixels.subpixels < finest;) {
     pixels.subpixels *= 2;
     const Lattice lattice = built_.scene().lattice(pixels);
-    const auto is_even = [&](RefinedPixel& pixel) {
-      return !pixel.split(samples, lattice, kUnevenOfChange * most_change_);
-    };
-    doubtful.erase(std::remove_if(doubtful.begin(), doubtful.end(), is_even), doubtful.end());
+    std::vector<RefinedPixel> uneven;
+    for (RefinedPixel& pixel : doubtful)
+      if (pixel.split(samples, lattice, kUnevenOfChange * most_change_)) uneven.push_back(std::move(pixel));
+    doubtful = std::move(uneven);
     if (doubtful.empty()) break;
     Lattice::Choice chosen(lattice.cells(rows->row_count));
     for (const RefinedPixel& pixel : doubtful) pixel.choose(lattice, &chosen);

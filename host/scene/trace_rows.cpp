@@ -217,8 +217,10 @@ void BlockTracer::place_samples() {
   std::uint32_t count = 0;
   for (int row = -margin_; row < rows_.row_count + margin_; ++row)
     for (int column = -margin_; column < width_ + margin_; ++column) {
-      const bool needed =
-          any_around(row, column, [&](int y, int x) { return is_sampled(y, x) || samples_lamps(y, x); });
+      const bool needed = chosen_ ? !(*chosen_)[lattice.cell(row, column)].empty()
+                                  : any_around(row, column, [&](int y, int x) {
+                                      return is_sampled(y, x) || samples_lamps(y, x);
+                                    });
       if (!needed) continue;
       lattice.first_sample[lattice.cell(row, column)] = count;
       count += static_cast<std::uint32_t>(pixels_.subpixels * pixels_.subpixels);
