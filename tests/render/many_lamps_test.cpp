@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <cmath>
 #include <fstream>
 #include <string>
 #include <vector>
@@ -90,28 +89,6 @@ TEST(ManyLamps, DoNotDependOnBlocks) {
   const std::vector<Place> lamps = places(8);
   const RenderResult whole = render_job(lamps);
   for (const int rows : {1, 7}) EXPECT_EQ(render_job(lamps, rows).image.pixels, whole.image.pixels) << rows;
-}
-
-/// A lamp passes others: pixels change from fits to samples and back, and none of it is seen.
-TEST(ManyLamps, OfWhichOnePassesDoNotFlicker) {
-  const std::vector<Place> others = places(5);
-  const std::vector<float> lit_by_others = sum_of_pictures(others);
-  std::vector<float> before;
-  for (int frame = 0; frame < 24; ++frame) {
-    const Place passing = {-2 + frame / 6.0, -3, 2.5};
-    std::vector<Place> lamps = others;
-    lamps.push_back(passing);
-    const std::vector<float> reference = sum(lit_by_others, render_job({passing}).image.pixels);
-    std::vector<float> off = render_job(lamps).image.pixels;
-    double change = 0, light = 0;
-    for (std::size_t n = 0; n < off.size(); ++n) {
-      off[n] -= reference[n];
-      change += before.empty() ? 0 : std::pow(off[n] - before[n], 2);
-      light += std::pow(reference[n], 2);
-    }
-    EXPECT_LT(std::sqrt(change / light), 0.01) << frame;
-    before = off;
-  }
 }
 
 }  // namespace
