@@ -1,6 +1,7 @@
 #include "host/render/built_job.h"
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -60,6 +61,7 @@ BuiltJob::BuiltJob(const Job& job, const Plan& plan, Device& device, int frame, 
   const Stopwatch watch;
   evaluators_.resize(surfaces_.size());
   brdfs_.resize(surfaces_.size());
+  lit_normals_.resize(surfaces_.size());
   for (std::size_t n = 0; n < surfaces_.size(); ++n) build_evaluator(n);
   build_seconds_ = watch.seconds();
 }
@@ -71,6 +73,10 @@ void BuiltJob::build_evaluator(std::size_t n) {
   brdfs_[n].reset();  // buffers go before the new ones come
   evaluators_[n].reset();
   if (planned.asks_densities) evaluators_[n] = make_density_evaluator(n);
+  const MethodTraits traits = method_of(job_, planned).traits();
+  lit_normals_[n].reset();
+  if (evaluators_[n] && surfaces_[n] && (traits.surface_normals || traits.chooses))
+    lit_normals_[n].emplace(*surfaces_[n]);
   if (planned.patch_brdf || plan_.gathers_light) brdfs_[n] = make_brdf(n);
 }
 
@@ -298,6 +304,11 @@ std::size_t BuiltJob::replaced_answers_of(std::size_t n) const {
   return (evaluators_[n] ? evaluators_[n]->replaced() : 0) + (brdfs_[n] ? brdfs_[n]->replaced() : 0);
 }
 
+bool BuiltJob::may_answer(const GlintQuery& glint) const {
+  const auto evaluator = static_cast<std::size_t>(plan_.evaluator_of_material[glint.material]);
+  return !lit_normals_[evaluator] || lit_normals_[evaluator]->may_answer(glint.query);
+}
+
 PendingBlock::PendingBlock(TracedRows rows, const BuiltJob& built)
     : PendingBlock(std::move(rows), built, built.evaluators()) {}
 
@@ -311,7 +322,15 @@ void PendingBlock::start() {
   const std::size_t end = std::min(started_ + plan.queries_a_block, rows_.queries.size());
   parts_ = std::vector<Part>(plan.evaluators.size());
   std::vector<std::vector<Query>> queries(parts_.size());
-  for (; started_ < end; ++started_) {
+  std::vector<std::uint8_t> asks(end - started_);
+  tbb::parallel_for(std::size_t{0}, asks.size(), [&](std::size_t n) {
+    asks[n] = built_->may_answer(rows_.queries[started_ + n]) ? 1 : 0;
+  });
+  for (const std::size_t first = started_; started_ < end; ++started_) {
+    if (!asks[started_ - first]) {
+      ++dropped_;
+      continue;
+    }
     const int evaluator = plan.evaluator_of_material[rows_.queries[started_].material];
     parts_[evaluator].places.push_back(started_);
     queries[evaluator].push_back(rows_.queries[started_].query);

@@ -11,6 +11,7 @@
 #include "host/job/job.h"
 #include "host/methods/evaluator.h"
 #include "host/methods/patch_brdf.h"
+#include "host/render/lit_normals.h"
 #include "host/render/plan.h"
 #include "host/scene/scene.h"
 #include "host/surface/surface.h"
@@ -40,6 +41,9 @@ class BuiltJob {
   /// By PlannedEvaluator; only one that asks for densities.
   Evaluator& evaluator(std::size_t n) const { return *evaluators_[n]; }
   std::vector<Evaluator*> evaluators() const;  ///< likewise; null for the others
+  /// Whether the evaluator of a query's material may answer more than 0; see LitNormals. Methods that
+  /// approximate the map by something else than its normals are always asked.
+  bool may_answer(const GlintQuery& glint) const;
   /// By PlannedEvaluator; of one that is a patch BRDF, and of all when light is gathered.
   PatchBrdf& brdf(std::size_t n) const { return *brdfs_[n]; }
   std::vector<const Surface*> surfaces() const;  ///< by PlannedEvaluator; null without a map
@@ -96,6 +100,7 @@ class BuiltJob {
   Scene scene_;
   std::vector<std::unique_ptr<Evaluator>> evaluators_;
   std::vector<std::unique_ptr<PatchBrdf>> brdfs_;
+  std::vector<std::optional<LitNormals>> lit_normals_;  // of methods that answer for the map's normals
 };
 
 /// The densities of a block of traced rows, on their way from all evaluators.
@@ -110,6 +115,8 @@ class PendingBlock {
   TracedRows& rows() { return rows_; }
   /// D of every query, in the order of rows().queries. Call once.
   std::vector<float> wait();
+  /// Of its queries, how many were not asked, since no normal could answer: their D is 0.
+  std::size_t dropped() const { return dropped_; }
 
  private:
   /// Those of its queries that are on the device, by evaluator.
@@ -128,6 +135,7 @@ class PendingBlock {
   std::vector<Evaluator*> evaluators_;
   std::vector<Part> parts_;  // by evaluator
   std::size_t started_ = 0;  // of the rows' queries; no more at a time than the plan has room for
+  std::size_t dropped_ = 0;
 };
 
 }  // namespace mica::host

@@ -6,6 +6,7 @@
 
 #include "host/render/luminance.h"
 #include "host/scene/aovs.h"
+#include "host/scene/lamp_samples.h"
 
 namespace mica::host {
 
@@ -43,6 +44,7 @@ std::vector<Eigen::Vector3d> radiance_of(const TracedRows& rows, const std::vect
       radiance[glint.pixel] += glint.weight.cast<double>() * static_cast<double>(densities[n]);
   const std::vector<Eigen::Vector3d> sample_radiance = sample_radiance_of(rows, densities, repairs);
   add_samples(rows, sample_radiance, &radiance);
+  add_lamp_samples(rows, densities, &radiance);
   blacken_what_is_not_finite(&radiance, repairs);
   for (Eigen::Vector3d& color : radiance) {
     if (color.minCoeff() >= 0) continue;

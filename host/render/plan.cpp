@@ -168,16 +168,14 @@ void check_long_lobes(const Job& job) {
   }
 }
 
-/// Whether small footprints show something else than large ones: other glints, or a patch of its own.
+}  // namespace
+
 bool has_no_limit(const PlannedEvaluator& planned) {
   return planned.patch_brdf || planned.surface_index < 0;
 }
 
-}  // namespace
-
 bool can_audit_pixels(const Plan& plan) {
-  return !plan.gathers_light && std::none_of(plan.evaluators.begin(), plan.evaluators.end(),
-                                             [](const PlannedEvaluator& e) { return has_no_limit(e); });
+  return !plan.gathers_light && std::none_of(plan.evaluators.begin(), plan.evaluators.end(), has_no_limit);
 }
 
 const Method& method_of(const Job& job, const PlannedEvaluator& planned) {

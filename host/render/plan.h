@@ -48,6 +48,9 @@ struct Plan {
 /// Derives the plan from the job; map files are opened for their size only. Throws FileError.
 Plan make_plan(const Job& job);
 
+/// Whether small footprints show something else than large ones: other glints, or a patch of its own.
+bool has_no_limit(const PlannedEvaluator& planned);
+
 /// Whether pixels can be integrated again: not where light is gathered by sampling, whose noise would be all
 /// that is seen, nor where small footprints do not add up to large ones: those of a patch's BRDF, and of
 /// glints without a map, of which each size sees its own.

@@ -23,18 +23,31 @@ constexpr double kChangeOfTolerance = 4, kWidth = 160;
 constexpr double kChangeOfDoubt = 1.0 / 3;
 /// Of a change by samples twice as dense: how much more four times as dense ones would change.
 constexpr double kChangeOfHalf = 0.5;
-constexpr Lattice::Rings kNear{0, 1};  // what Scene::sample samples
+/// Of the change of a pixel that may stay, what a sample's may be: a dozen of them lie along an edge, and the
+/// truth of each is somewhere between itself and the sample across the edge.
+constexpr double kUnevenOfChange = 0.02;
 
 using Colors = std::vector<Eigen::Vector3d>;
+
+/// Queries, and those of them that no normal could answer.
+struct Asked {
+  std::size_t queries = 0, dropped = 0;
+};
 
 struct Samples {
   Lattice lattice;
   Colors radiance;
 
-  /// What a pixel sees of some rings about it.
-  Eigen::Vector3d sum(int row, int column, const Lattice::Rings& rings) const {
+  /// Sample (i, j) of those that a pixel sees, from the first one of the first pixel within reach.
+  const Eigen::Vector3d& at(int row, int column, std::size_t i, std::size_t j) const {
+    const auto n = static_cast<std::size_t>(lattice.subpixels);
+    const int down = static_cast<int>(j / n) - lattice.margin,
+              right = static_cast<int>(i / n) - lattice.margin;
+    return radiance[lattice.first_sample[lattice.cell(row + down, column + right)] + j % n * n + i % n];
+  }
+  Eigen::Vector3d sum(int row, int column) const {
     Eigen::Vector3d color = Eigen::Vector3d::Zero();
-    lattice.sum(row, column, rings,
+    lattice.sum(row, column, lattice.all(),
                 [&](std::size_t sample, double weight) { color += weight * radiance[sample]; });
     return color;
   }
@@ -42,7 +55,9 @@ struct Samples {
 
 /// Densities of all queries of rows, few at a time: the device has a block of rows in flight besides. Tints
 /// the weights of glints.
-std::vector<float> densities_of(const BuiltJob& built, TracedRows* rows, std::size_t queries_at_a_time) {
+/// @param dropped counts those that were not asked.
+std::vector<float> densities_of(const BuiltJob& built, TracedRows* rows, std::size_t queries_at_a_time,
+                                std::size_t* dropped) {
   std::vector<float> densities;
   for (std::size_t first = 0; first < rows->queries.size(); first += queries_at_a_time) {
     const std::size_t count = std::min(queries_at_a_time, rows->queries.size() - first);
@@ -51,17 +66,18 @@ std::vector<float> densities_of(const BuiltJob& built, TracedRows* rows, std::si
     some.queries.assign(begin, begin + static_cast<std::ptrdiff_t>(count));
     PendingBlock block(std::move(some), built);
     const std::vector<float> answers = block.wait();
+    *dropped += block.dropped();
     densities.insert(densities.end(), answers.begin(), answers.end());
     std::copy(block.rows().queries.begin(), block.rows().queries.end(), begin);
   }
   return densities;
 }
 
-Samples sample(const BuiltJob& built, int first_row, int row_count, const std::vector<bool>& which,
-               const PixelSettings& pixels, std::size_t queries_at_a_time, std::size_t* queries) {
-  TracedRows rows = built.scene().sample(first_row, row_count, which, pixels);
-  *queries += rows.queries.size() + add_lit_brdfs(built, &rows);
-  const std::vector<float> densities = densities_of(built, &rows, queries_at_a_time);
+Samples sample(const BuiltJob& built, int first_row, int row_count, const Lattice::Choice& chosen,
+               const PixelSettings& pixels, std::size_t queries_at_a_time, Asked* asked) {
+  TracedRows rows = built.scene().sample(first_row, row_count, chosen, pixels);
+  asked->queries += rows.queries.size() + add_lit_brdfs(built, &rows);
+  const std::vector<float> densities = densities_of(built, &rows, queries_at_a_time, &asked->dropped);
   FilmRepairs repairs;  // what is black for that reason was so before
   return {rows.lattice, sample_radiance_of(rows, densities, &repairs)};
 }
@@ -79,41 +95,158 @@ double mean_square(const BuiltJob& built) {
   pixels.filter = PixelFilter({});  // of the pixel alone
   pixels.subpixels = kLookSubpixels;
   double sum = 0;
-  std::size_t queries = 0;
+  Asked asked;
+  const Lattice lattice = built.scene().lattice(pixels);
   for (int n = 0; n < kLooksAlong; ++n) {
-    std::vector<bool> which(static_cast<std::size_t>(image.width));
+    Lattice::Choice chosen(lattice.cells(1));
     std::vector<int> columns;
     for (int m = 0; m < kLooksAlong; ++m) {
       columns.push_back(place(m, image.width, (n + 1) * kLooksAlong + m));
-      which[static_cast<std::size_t>(columns.back())] = true;
+      chosen[lattice.cell(0, columns.back())].assign(kLookSubpixels * kLookSubpixels, true);
     }
-    const Samples samples = sample(built, place(n, image.height, n), 1, which, pixels, kFewQueries, &queries);
+    const Samples samples = sample(built, place(n, image.height, n), 1, chosen, pixels, kFewQueries, &asked);
     for (const int column : columns)
-      sum += std::pow(luminance(samples.sum(0, column, kNear)), 2) / (kLooksAlong * kLooksAlong);
+      sum += std::pow(luminance(samples.sum(0, column)), 2) / (kLooksAlong * kLooksAlong);
   }
   return sum;
+}
+
+/// Pixels of rows whose samples may be any denser: not those of glints of which smaller footprints see
+/// others.
+std::vector<bool> pixels_with_limit(const BuiltJob& built, const TracedRows& rows) {
+  std::vector<bool> has_limit(rows.fitted.size(), true);
+  const Plan& plan = built.plan();
+  for (const GlintQuery& query : rows.queries)
+    if (query.pixel != GlintQuery::kNone &&
+        has_no_limit(plan.evaluators[static_cast<std::size_t>(plan.evaluator_of_material[query.material])]))
+      has_limit[query.pixel] = false;
+  return has_limit;
 }
 
 /// How far a pixel's sum over its samples may be off: what it would change by if every other row of them,
 /// every other column, or every other sample counted twice and the rest not at all.
 double doubt(const Samples& samples, int row, int column) {
-  const Lattice& lattice = samples.lattice;
-  const auto n = static_cast<std::size_t>(lattice.subpixels), across = lattice.filter.weights.size();
+  const std::vector<double>& weights = samples.lattice.filter.weights;
   double rows = 0, columns = 0, both = 0;
-  for (std::size_t j = 0; j < across; ++j)
-    for (std::size_t i = 0; i < across; ++i) {
-      const double weight = lattice.filter.weights[j] * lattice.filter.weights[i];
+  for (std::size_t j = 0; j < weights.size(); ++j)
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+      const double weight = weights[j] * weights[i];
       if (!(weight > 0)) continue;
-      const int down = static_cast<int>(j / n) - lattice.margin,
-                right = static_cast<int>(i / n) - lattice.margin;
-      const std::size_t first = lattice.first_sample[lattice.cell(row + down, column + right)];
-      const double part = weight * luminance(samples.radiance[first + j % n * n + i % n]);
+      const double part = weight * luminance(samples.at(row, column, i, j));
       rows += j % 2 == 0 ? part : -part;
       columns += i % 2 == 0 ? part : -part;
       both += (i + j) % 2 == 0 ? part : -part;
     }
   return std::sqrt(rows * rows + columns * columns + both * both);
 }
+
+/// Weights by which four samples along an axis, half as far apart, stand for one between the middle two of
+/// them: the outer ones and the inner ones. They keep its variance.
+struct Quarters {
+  double outer, inner;
+
+  Quarters(double sigma, double fine_sigma, double fine_spacing) {
+    const double variance = (sigma * sigma - fine_sigma * fine_sigma) / (fine_spacing * fine_spacing);
+    outer = std::clamp((variance - 0.25) / 4, 0.0, 0.5), inner = 0.5 - outer;
+  }
+  double operator[](int n) const { return n == 0 || n == 3 ? outer : inner; }
+};
+
+/// A pixel as a sum of samples, of which those that differ from their neighbours give way to denser ones.
+class RefinedPixel {
+ public:
+  RefinedPixel(std::size_t pixel, const Samples& coarse)
+      : pixel_(pixel),
+        row_(static_cast<int>(pixel) / coarse.lattice.width),
+        column_(static_cast<int>(pixel) % coarse.lattice.width),
+        shown_(coarse.sum(row_, column_)) {
+    const std::vector<double>& weights = coarse.lattice.filter.weights;
+    for (const double down : weights)
+      for (const double right : weights) weights_.push_back(down * right);
+  }
+
+  /// Parts with samples that change its luminance by `most` or more, if neighbours were right.
+  /// @param fine the lattice twice as dense. @return whether it had any.
+  bool split(const Samples& samples, const Lattice& fine, double most) {
+    const std::size_t across = samples.lattice.filter.weights.size();
+    const Quarters quarters(samples.lattice.filter.sigma_pixels, fine.filter.sigma_pixels,
+                            1.0 / fine.subpixels);
+    const int last = 2 * static_cast<int>(across) - 1;
+    std::vector<double> denser(4 * across * across, 0.0);
+    bool any = false;
+    for (std::size_t j = 0; j < across; ++j)
+      for (std::size_t i = 0; i < across; ++i) {
+        const double weight = weights_[j * across + i];
+        if (!(weight > 0)) continue;
+        if (!(weight * contrast(samples, i, j) > most)) {
+          even_ += weight * samples.at(row_, column_, i, j);
+          continue;
+        }
+        any = true;
+        for (int y = 0; y < 4; ++y)
+          for (int x = 0; x < 4; ++x) {
+            const int down = std::clamp(2 * static_cast<int>(j) + y - 1, 0, last),
+                      right = std::clamp(2 * static_cast<int>(i) + x - 1, 0, last);
+            denser[static_cast<std::size_t>(down * (last + 1) + right)] += weight * quarters[y] * quarters[x];
+          }
+      }
+    weights_ = std::move(denser);
+    return any;
+  }
+
+  /// Adds the samples that it needs.
+  void choose(const Lattice& lattice, Lattice::Choice* chosen) const {
+    const auto n = static_cast<std::size_t>(lattice.subpixels);
+    each([&](std::size_t i, std::size_t j, double) {
+      const int down = static_cast<int>(j / n) - lattice.margin,
+                right = static_cast<int>(i / n) - lattice.margin;
+      std::vector<bool>& cell = (*chosen)[lattice.cell(row_ + down, column_ + right)];
+      cell.resize(n * n, false);
+      cell[j % n * n + i % n] = true;
+    });
+  }
+
+  /// @return by how much its luminance changed.
+  double look_at(const Samples& samples) {
+    Eigen::Vector3d color = even_;
+    each([&](std::size_t i, std::size_t j, double weight) {
+      color += weight * samples.at(row_, column_, i, j);
+    });
+    const double change = std::abs(luminance(color - shown_));
+    shown_ = color;
+    return change;
+  }
+
+  std::size_t pixel() const { return pixel_; }
+  const Eigen::Vector3d& shown() const { return shown_; }
+
+ private:
+  template <typename Visit>
+  void each(const Visit& visit) const {
+    const auto across = static_cast<std::size_t>(std::lround(std::sqrt(weights_.size())));
+    for (std::size_t j = 0; j < across; ++j)
+      for (std::size_t i = 0; i < across; ++i)
+        if (const double weight = weights_[j * across + i]; weight > 0) visit(i, j, weight);
+  }
+
+  /// The largest difference of luminance to a sample beside it that is there for this pixel.
+  double contrast(const Samples& samples, std::size_t i, std::size_t j) const {
+    const std::size_t across = samples.lattice.filter.weights.size();
+    const double here = luminance(samples.at(row_, column_, i, j));
+    double most = 0;
+    const auto look = [&](std::size_t x, std::size_t y) {
+      if (x < across && y < across && weights_[y * across + x] > 0)  // -1 is larger
+        most = std::max(most, std::abs(luminance(samples.at(row_, column_, x, y)) - here));
+    };
+    look(i - 1, j), look(i + 1, j), look(i, j - 1), look(i, j + 1);
+    return most;
+  }
+
+  std::size_t pixel_;
+  int row_, column_;
+  Eigen::Vector3d even_ = Eigen::Vector3d::Zero(), shown_;  // of samples that stay; of all
+  std::vector<double> weights_;                             // of those that it sees, row by row
+};
 
 }  // namespace
 
@@ -123,58 +256,54 @@ Refinement::Refinement(const BuiltJob& built) : built_(built) {
   const bool wants_errors = std::find(channels.begin(), channels.end(), "error.Y") != channels.end();
   // One sample a pixel says nothing of its error.
   tells_doubts_ = built.sees_scene() && pixels.subpixels > 1 && (pixels.fits || wants_errors);
-  if (tells_doubts_ && pixels.fits)
+  const std::vector<PlannedEvaluator>& evaluators = built.plan().evaluators;
+  if (tells_doubts_ && pixels.fits && !std::all_of(evaluators.begin(), evaluators.end(), has_no_limit))
     most_change_ = kChangeOfTolerance * std::sqrt(built.job().image.width / kWidth) *
                    built.job().accuracy.tolerance * std::sqrt(mean_square(built));
 }
 
 std::size_t Refinement::refine(TracedRows* rows, const std::vector<float>& densities) {
-  std::size_t queries = 0;
-  if (!tells_doubts_) return queries;
+  if (!tells_doubts_) return 0;
+  Asked asked;
   FilmRepairs repairs;  // the film counts them
-  const Samples coarse{rows->lattice, sample_radiance_of(*rows, densities, &repairs)};
-  const int width = rows->lattice.width;
-  std::vector<bool> doubtful(rows->fitted.size());
-  const auto each_doubtful = [&](const auto& visit) {
-    for (std::size_t pixel = 0; pixel < doubtful.size(); ++pixel)
-      if (doubtful[pixel]) visit(pixel, static_cast<int>(pixel) / width, static_cast<int>(pixel) % width);
-  };
-  for (std::size_t pixel = 0; pixel < doubtful.size(); ++pixel) doubtful[pixel] = !rows->fitted[pixel];
-  std::size_t count = 0;
-  each_doubtful([&](std::size_t pixel, int row, int column) {
-    const double change = kChangeOfDoubt * doubt(coarse, row, column);
+  Samples samples{rows->lattice, sample_radiance_of(*rows, densities, &repairs)};
+  const std::vector<bool> has_limit = pixels_with_limit(built_, *rows);
+  std::vector<RefinedPixel> doubtful;
+  const auto width = static_cast<std::size_t>(rows->lattice.width);
+  for (std::size_t pixel = 0; pixel < rows->fitted.size(); ++pixel) {
+    if (rows->fitted[pixel]) continue;
+    const double change =
+        kChangeOfDoubt * doubt(samples, static_cast<int>(pixel / width), static_cast<int>(pixel % width));
     rows->doubt[pixel] = static_cast<float>(change);
-    doubtful[pixel] = most_change_ > 0 && change > most_change_;
-    count += doubtful[pixel] ? 1 : 0;
-  });
-  if (count == 0) return queries;
-  refined_ += count;
-  std::vector<Eigen::Vector3d> shown(doubtful.size());
-  each_doubtful([&](std::size_t pixel, int row, int column) {
-    shown[pixel] = coarse.sum(row, column, rows->lattice.all());
-  });
+    if (most_change_ > 0 && change > most_change_ && has_limit[pixel]) doubtful.emplace_back(pixel, samples);
+  }
+  refined_ += doubtful.size();
   PixelSettings pixels = built_.scene().pixels();
   pixels.fits = false;
-  const int finest = kFinestBy * pixels.subpixels;
-  while (pixels.subpixels < finest && count > 0) {
+  for (const int finest = kFinestBy * pixels.subpixels; pixels.subpixels < finest;) {
     pixels.subpixels *= 2;
-    const Samples fine = sample(built_, rows->first_row, rows->row_count, doubtful, pixels,
-                                std::max(kFewQueries, densities.size() / 16), &queries);
-    count = 0;
-    each_doubtful([&](std::size_t pixel, int row, int column) {
-      // What is further away has hardly any weight, and stays.
-      const Eigen::Vector3d color =
-          fine.sum(row, column, kNear) + coarse.sum(row, column, {kNear.farthest + 1, rows->lattice.margin});
-      const double change = std::abs(luminance(color - shown[pixel]));
-      rows->doubt[pixel] = static_cast<float>(kChangeOfHalf * change);
-      doubtful[pixel] = change > most_change_;
-      count += doubtful[pixel] ? 1 : 0;
-      shown[pixel] = color;
-      rows->fitted[pixel] = 1;
-      rows->radiance[pixel] = color.cast<float>();
-    });
+    const Lattice lattice = built_.scene().lattice(pixels);
+    std::vector<RefinedPixel> uneven;
+    for (RefinedPixel& pixel : doubtful)
+      if (pixel.split(samples, lattice, kUnevenOfChange * most_change_)) uneven.push_back(std::move(pixel));
+    doubtful = std::move(uneven);
+    if (doubtful.empty()) break;
+    Lattice::Choice chosen(lattice.cells(rows->row_count));
+    for (const RefinedPixel& pixel : doubtful) pixel.choose(lattice, &chosen);
+    samples = sample(built_, rows->first_row, rows->row_count, chosen, pixels,
+                     std::max(kFewQueries, densities.size() / 16), &asked);
+    std::vector<RefinedPixel> changed;
+    for (RefinedPixel& pixel : doubtful) {
+      const double change = pixel.look_at(samples);
+      rows->fitted[pixel.pixel()] = 1;
+      rows->doubt[pixel.pixel()] = static_cast<float>(kChangeOfHalf * change);
+      rows->radiance[pixel.pixel()] = pixel.shown().cast<float>();
+      if (change > most_change_) changed.push_back(std::move(pixel));
+    }
+    doubtful = std::move(changed);
   }
-  return queries;
+  dropped_ += asked.dropped;
+  return asked.queries;
 }
 
 }  // namespace mica::host

@@ -21,14 +21,13 @@ namespace {
 /// Offers a block's queries to the audit.
 void offer(const TracedRows& rows, const std::vector<float>& densities, const Plan& plan, int width,
            AuditSampler* sampler) {
-  std::uint64_t ordinal = 0;
+  std::vector<std::uint64_t> ordinals(rows.fitted.size(), 0);
   for (std::size_t n = 0; n < densities.size(); ++n) {
     const GlintQuery& glint = rows.queries[n];
     if (glint.pixel == GlintQuery::kNone) continue;  // its own block has it too
-    ordinal = n > 0 && rows.queries[n - 1].pixel == glint.pixel ? ordinal + 1 : 0;
     const std::uint64_t pixel = static_cast<std::uint64_t>(rows.first_row) * width + glint.pixel;
-    sampler->offer(pixel, ordinal, glint.query, densities[n], plan.evaluator_of_material[glint.material],
-                   glint.glints);
+    sampler->offer(pixel, ordinals[glint.pixel]++, glint.query, densities[n],
+                   plan.evaluator_of_material[glint.material], glint.glints);
   }
 }
 
@@ -133,12 +132,14 @@ void evaluate_rows(const BuiltJob& built, const RowRange& rows, const RenderProg
       offer(in_flight->rows(), densities, built.plan(), built.job().image.width, sampler);
       lamps.add(in_flight->rows(), densities);
       result->queries += densities.size();
+      result->dropped_queries += in_flight->dropped();
       progress(in_flight->rows().first_row + in_flight->rows().row_count - rows.first, rows.count);
     }
     in_flight = std::move(next);
   }
   result->refined_pixels = refinement.refined_pixels();
   result->lamps_error = lamps.relative_l2();
+  result->dropped_queries += refinement.dropped_queries();
   result->seconds.render = total.seconds();
 }
 

@@ -33,10 +33,11 @@ struct RenderResult {
   Plan plan;
   PhaseSeconds seconds;
   std::size_t queries = 0;
-  std::size_t refined_pixels = 0;  ///< see Refinement
-  double lamps_error = 0;          ///< estimate of the relative L2 for lamps' extent, see GlintQuery
-  std::size_t device_bytes = 0;    ///< of all structures, as allocated
-  double device_seconds = 0;       ///< that kernels ran, by the device's clock
+  std::size_t dropped_queries = 0;  ///< of these, those that no normal could answer; see LitNormals
+  std::size_t refined_pixels = 0;   ///< see Refinement
+  double lamps_error = 0;           ///< estimate of the relative L2 for lamps' extent, see GlintQuery
+  std::size_t device_bytes = 0;     ///< of all structures, as allocated
+  double device_seconds = 0;        ///< that kernels ran, by the device's clock
   std::vector<AuditedSample> audited;
   AuditedPixels audited_pixels;
   AuditResult audit;  ///< of queries

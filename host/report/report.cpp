@@ -79,6 +79,7 @@ std::string render_json(const Job& job, const DeviceInfo& device, const RenderRe
                      {"refine", s.refine},     {"wait", s.wait},   {"audit", s.audit},
                      {"total", s.total}};
   json["queries"] = result.queries;
+  json["dropped_queries"] = result.dropped_queries;
   json["refined_pixels"] = result.refined_pixels;
   json["lamps_error"] = result.lamps_error;
   json["device_seconds"] = result.device_seconds;

@@ -46,6 +46,7 @@ TracedRows empty_rows(int first_row, int row_count, int width) {
   rows.normal.assign(pixels, Eigen::Vector3f::Zero());
   rows.query_count.assign(pixels, 0);
   rows.doubt.assign(pixels, 0);
+  rows.sampled_lamps.resize(pixels);
   return rows;
 }
 
@@ -53,6 +54,7 @@ void join_queries(std::vector<RowQueries>* rows, TracedRows* all) {
   join(rows, &RowQueries::glints, &all->queries);
   join(rows, &RowQueries::points, &all->points);
   join(rows, &RowQueries::lit, &all->lit);
+  join(rows, &RowQueries::lamp_samples, &all->lamp_samples);
 }
 
 }  // namespace mica::host

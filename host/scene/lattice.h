@@ -13,6 +13,9 @@ namespace mica::host {
 /// Samples at the centres of subpixels, which neighbouring pixels share: each pixel is a weighted sum of
 /// those within reach of its filter. Only pixels that need them have samples.
 struct Lattice {
+  /// Some samples, by cell: which of it; of an empty cell none.
+  using Choice = std::vector<std::vector<bool>>;
+
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
   int width = 0, margin = 0;  ///< pixels: of the image, and around the block's rows on all sides
   int subpixels = 1;
@@ -23,6 +26,8 @@ struct Lattice {
     return static_cast<std::size_t>(row + margin) * static_cast<std::size_t>(width + 2 * margin) +
            static_cast<std::size_t>(column + margin);
   }
+
+  std::size_t cells(int rows) const { return cell(rows + margin, -margin); }
 
   /// Pixels at some distances from a pixel, along the axis along which they are further away.
   struct Rings {

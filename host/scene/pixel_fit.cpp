@@ -33,12 +33,14 @@ Probe probe_of(const Viewer& viewer, const SeenPoint& point) {
   probe.faces_eye = point.faces_eye;
   probe.uv = point.uv, probe.duv = point.duv;
   probe.normal = point.frame.z;
-  for (const SeenLamp& lamp : point.lamps)
-    probe.lamps.push_back(
-        {lamp.light, lamp.is_above, lamp.visible, lamp.half_vector, lamp.seen.roughness, lamp.lobe_cov,
-         lamp.visible > 0 ? Color(lamp.seen.glint_weight.cwiseProduct(lamp.incident.irradiance))
-                          : Color(Color::Zero()),
-         lamp.weight_unshadowed, lamp.missed});
+  for (const SeenLamp& lamp : point.lamps) {
+    const auto lit = [&](const Color& by_unit) {
+      return lamp.visible > 0 ? Color(by_unit.cwiseProduct(lamp.incident.irradiance)) : Color(Color::Zero());
+    };
+    probe.lamps.push_back({lamp.light, lamp.is_above, lamp.visible, lamp.half_vector, lamp.seen.roughness,
+                           lamp.lobe_cov, lit(lamp.seen.glint_weight), lit(lamp.seen.smooth),
+                           lamp.weight_unshadowed, lamp.missed});
+  }
   if (const std::optional<GlintMaterial>& glints = viewer.shared->glints[point.material];
       glints && glints->has_one_place())
     for (const GlintPlace& place : glints->places(point.ray, *point.hit, point.frame, 0.5))
@@ -115,13 +117,17 @@ PixelFit::PixelFit(const FitStencil& stencil, const ProbesOfFit& probes, const U
   u_ = stencil.fit(u, &u_residual_), v_ = stencil.fit(v, &v_residual_);
 }
 
-Color PixelFit::radiance(const FilterSum& filter) const {
+Color PixelFit::radiance(const FilterSum& filter, const std::vector<std::uint32_t>& without) const {
   Color mean = Color::Zero();
   const Eigen::Matrix2d cov = filter.sigma_pixels * filter.sigma_pixels * Eigen::Matrix2d::Identity();
   for (int channel = 0; channel < 3; ++channel) {
     Values values = stencil_.zeros();
-    for (std::size_t n = 0; n < stencil_.size(); ++n)
-      values[static_cast<Eigen::Index>(n)] = probes_[n]->radiance[channel];
+    for (std::size_t n = 0; n < stencil_.size(); ++n) {
+      double& value = values[static_cast<Eigen::Index>(n)];
+      value = probes_[n]->radiance[channel];
+      for (const Probe::Lamp& lamp : probes_[n]->lamps)
+        if (std::binary_search(without.begin(), without.end(), lamp.light)) value -= lamp.smooth[channel];
+    }
     const Quadratic fitted = stencil_.fit(values);
     double sum = 0;
     for (std::size_t i = 0; i < filter.weights.size(); ++i)

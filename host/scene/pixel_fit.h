@@ -30,6 +30,7 @@ struct Probe {
     double roughness = 0;
     std::optional<Eigen::Matrix2d> lobe_cov;  ///< as SeenLamp
     Color weight = Color::Zero();             ///< radiance per unit of D, of what is visible
+    Color smooth = Color::Zero();             ///< radiance that needs no P-NDF, likewise
     double weight_unshadowed = 0;             ///< as SeenLamp
     double missed = 0;                        ///< as SeenLamp
   };
@@ -39,7 +40,7 @@ struct Probe {
   Eigen::Vector2d uv{0, 0};
   Eigen::Matrix2d duv = Eigen::Matrix2d::Zero();
   Eigen::Vector3d normal{0, 0, 0};
-  Color radiance = Color::Zero();
+  Color radiance = Color::Zero();  ///< of what needs no P-NDF, of all lamps
   std::vector<Lamp> lamps;
   std::vector<GlintPoint> glints;  ///< its processes, of materials without a map: their uv do not repeat
 };
@@ -110,8 +111,8 @@ class PixelFit {
   /// @param stencil has to outlive it. @param probes on one surface, facing the eye, or all on none.
   PixelFit(const FitStencil& stencil, const ProbesOfFit& probes, const UvSteps& steps);
 
-  /// Mean over the filter of what needs no P-NDF.
-  Color radiance(const FilterSum& filter) const;
+  /// Mean over the filter of what needs no P-NDF. @param without lamps that do not count.
+  Color radiance(const FilterSum& filter, const std::vector<std::uint32_t>& without = {}) const;
   Footprint footprint(const FilterSum& filter) const;
 
   /// Whether any of the rays sees the lamp above the horizon.

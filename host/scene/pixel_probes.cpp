@@ -88,15 +88,25 @@ bool PixelProbes::agree(int row, int column) const {
   const Probe& middle = center(row, column);
   return !any_near(2 * row + 1, 2 * column + 1, 2 * reach_ + 1, [&](int down, int right) {
     const Probe& probe = at(down, right);
-    if (probe.surface != middle.surface || probe.faces_eye != middle.faces_eye) return true;
-    if (!alike(probe.lamps, middle.lamps)) return true;
-    for (std::size_t n = 0; n < probe.lamps.size(); ++n) {
+    return probe.surface != middle.surface || probe.faces_eye != middle.faces_eye ||
+           !alike(probe.lamps, middle.lamps);
+  });
+}
+
+std::vector<bool> PixelProbes::edges(int row, int column) const {
+  const Probe& middle = center(row, column);
+  std::vector<bool> edges(middle.lamps.size(), false);
+  any_near(2 * row + 1, 2 * column + 1, 2 * reach_ + 1, [&](int down, int right) {
+    const Probe& probe = at(down, right);
+    for (std::size_t n = 0; n < edges.size(); ++n) {
       const Probe::Lamp &lamp = probe.lamps[n], &of_middle = middle.lamps[n];
-      if (lamp.is_above != of_middle.is_above) return true;
-      if (!has_extent_[lamp.light] && lamp.visible != of_middle.visible) return true;
+      if (lamp.is_above != of_middle.is_above ||
+          (!has_extent_[lamp.light] && lamp.visible != of_middle.visible))
+        edges[n] = true;
     }
     return false;
   });
+  return edges;
 }
 
 ProbesOfFit PixelProbes::of_fit(int row, int column) const {

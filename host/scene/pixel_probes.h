@@ -22,9 +22,13 @@ class PixelProbes {
 
   const Probe& center(int row, int column) const { return at(2 * row + 1, 2 * column + 1); }
 
-  /// Whether all rays within reach of a pixel meet one surface, each lamp is above the horizon for all or
-  /// none of them, and shadows have no edge: a lamp without extent is seen by all or none.
+  /// Whether all rays within reach of a pixel meet one surface.
   bool agree(int row, int column) const;
+
+  /// By lamp, of a pixel whose rays agree: whether it has an edge within reach. It has none where it is above
+  /// the horizon for all rays or none, and shadows have no edge: a lamp without extent is seen by all or
+  /// none.
+  std::vector<bool> edges(int row, int column) const;
 
   /// By place of FitStencil::centers_and_corners().
   ProbesOfFit of_fit(int row, int column) const;

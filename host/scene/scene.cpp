@@ -164,11 +164,19 @@ TracedRows Scene::trace(int first_row, int row_count) const {
   return trace_rows(self.viewer, self.pixels, {self.width, self.height, first_row, row_count, 0, self.width});
 }
 
-TracedRows Scene::sample(int first_row, int row_count, const std::vector<bool>& which,
+Lattice Scene::lattice(const PixelSettings& pixels) const {
+  return {implementation_->width,
+          pixels.filter.margin_pixels(),
+          pixels.subpixels,
+          pixels.filter.on_lattice(pixels.subpixels),
+          {}};
+}
+
+TracedRows Scene::sample(int first_row, int row_count, const Lattice::Choice& chosen,
                          const PixelSettings& pixels) const {
   const Implementation& self = *implementation_;
   return sample_rows(self.viewer, pixels, {self.width, self.height, first_row, row_count, 0, self.width},
-                     which);
+                     chosen);
 }
 
 TracedRows Scene::trace_pixel(int row, int column, const PixelSettings& pixels) const {

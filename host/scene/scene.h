@@ -34,10 +34,17 @@ struct GlintQuery {
   float missed_by_footprint = 0, missed_by_lamp = 0;
 };
 
+/// What a sample shows of one lamp that needs no P-NDF.
+struct LampSample {
+  std::uint32_t sample, light;  ///< as in GlintQuery
+  Eigen::Vector3f radiance;
+};
+
 /// What tracing a block of image rows found. Rows count from the top of the image.
 ///
-/// A pixel that was fitted has its light in `radiance` and in queries of its own. All others are sums over
-/// the samples of `lattice`, which have their light in `sample_radiance` and in queries of theirs.
+/// A pixel that was fitted has its light in `radiance` and in queries of its own; where some lamps have
+/// edges, it is besides a sum over what samples show of these. All others are sums over the samples of
+/// `lattice`, which have their light in `sample_radiance` and in queries of theirs.
 struct TracedRows {
   int first_row = 0, row_count = 0;
   std::vector<GlintQuery>
@@ -45,9 +52,11 @@ struct TracedRows {
   std::vector<LitPoint> points;  ///< samples that gather light, in the same order; see LightGathering
   std::vector<LitBrdf> lit;      ///< lights on materials that are patch BRDFs, likewise
   Lattice lattice;
-  std::vector<std::uint8_t> fitted;              ///< a pixel: 1, or 0 where it is a sum of samples
-  std::vector<Eigen::Vector3f> radiance;         ///< a pixel: of what needs no P-NDF; of fitted ones
-  std::vector<Eigen::Vector3f> sample_radiance;  ///< a sample
+  std::vector<std::uint8_t> fitted;                       ///< a pixel: 1, or 0 where it is a sum of samples
+  std::vector<Eigen::Vector3f> radiance;                  ///< a pixel: of what needs no P-NDF; of fitted ones
+  std::vector<Eigen::Vector3f> sample_radiance;           ///< a sample
+  std::vector<std::vector<std::uint32_t>> sampled_lamps;  ///< a pixel: of a fitted one, lights in order
+  std::vector<LampSample> lamp_samples;                   ///< for these, in the order of samples
   /// AOVs, a pixel: means over its samples that hit a shape; zero where none did.
   std::vector<Eigen::Vector2f>
       uv;  ///< coordinates in the map, wrapped to [0, 1); a mean across the wrap stays there
@@ -117,11 +126,13 @@ class Scene {
   /// @param pixels without fits; of any number of subpixels.
   TracedRows trace_pixel(int row, int column, const PixelSettings& pixels) const;
 
-  /// Samples what some pixels of rows see in themselves and in the pixels around them.
-  /// @param which of the rows' pixels; all stay black, but for their samples.
+  /// Takes samples of rows; their pixels stay black. A sample does not depend on which others are taken.
+  /// @param chosen by the cells of the lattice of `pixels`.
   /// @param pixels without fits; of any number of subpixels.
-  TracedRows sample(int first_row, int row_count, const std::vector<bool>& which,
+  TracedRows sample(int first_row, int row_count, const Lattice::Choice& chosen,
                     const PixelSettings& pixels) const;
+  /// The lattice of rows of the image, without samples.
+  Lattice lattice(const PixelSettings& pixels) const;
 
   const Viewer& viewer() const;
   const PixelSettings& pixels() const;

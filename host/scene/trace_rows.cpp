@@ -20,12 +20,23 @@ namespace {
 /// 0.23.
 constexpr double kMostPenumbraResidual = 0.12;
 
+/// Of the lamps that a pixel sees, those that samples may stand for, each for itself, while a fit does for
+/// the others. Where there are more of them all of the pixel is sampled, and refined where it is in doubt.
+constexpr double kMostSampledLamps = 0.25;
+
 /// What a fitted pixel shows; unset: it needs samples.
 struct FittedPixel {
   Color radiance = Color::Zero();
   std::optional<Footprint> footprint;  ///< of a shape
   Eigen::Vector3d normal{0, 0, 0};
   std::vector<GlintQuery> queries;
+  std::vector<std::uint32_t> sampled_lamps;  ///< that need samples, in order
+};
+
+/// The lamps that samples are taken of.
+struct WantedLamps {
+  bool all = false;
+  std::vector<std::uint32_t> some;  ///< in order
 };
 
 /// All steps of a block of rows. Rows and columns count from the block's first pixel.
@@ -51,14 +62,9 @@ class BlockTracer {
     return take_samples();
   }
 
-  /// @param which pixels need samples.
-  TracedRows sample(const std::vector<bool>& which) {
-    for (int row = first_seen_; row < end_seen_; ++row)
-      for (int column = 0; column < width_; ++column) {
-        const bool of_rows = row >= 0 && row < rows_.row_count;
-        if (!of_rows || !which[pixel_of(row, column)]) fits_.at(row, column).emplace();
-      }
-    sampled_around_ = std::min(margin_, 1);
+  /// @param chosen by cell of the lattice.
+  TracedRows sample(const Lattice::Choice& chosen) {
+    chosen_ = &chosen;
     return take_samples();
   }
 
@@ -89,7 +95,10 @@ class BlockTracer {
   void place_samples();
   void write_fits(int row, RowQueries* queries);
   void sample_row(int row, RowQueries* queries);
+  WantedLamps wanted_lamps(int row, int column) const;
   void sample_cell(int row, int column, std::uint32_t first_sample, RowQueries* queries);
+  void own_lamps(int row, int column, std::size_t first_glint, RowQueries* queries);
+  std::vector<SeenPoint> look(const Viewer& viewer, int row, int column) const;
   std::vector<std::vector<Eigen::Matrix2d>> turns_of(const std::vector<SeenPoint>& points) const;
   bool has_fit(int row, int column) const {
     return row >= first_seen_ && row < end_seen_ && column >= 0 && column < width_ &&
@@ -104,13 +113,46 @@ class BlockTracer {
     const int first = margin_ * pixels_.subpixels;
     return counts(down + first) && counts(right + first);
   }
+  bool is_chosen(int row, int column, int k) const {
+    return !chosen_ || (*chosen_)[rows_.lattice.cell(row, column)][static_cast<std::size_t>(k)];
+  }
+  /// Whether a sample or one next to it in its pixel is: half vectors turn from one to the next.
+  bool is_near_chosen(int row, int column, int k) const {
+    const int n = pixels_.subpixels, right = k % n, down = k / n;
+    return is_chosen(row, column, k) || (right > 0 && is_chosen(row, column, k - 1)) ||
+           (right + 1 < n && is_chosen(row, column, k + 1)) || (down > 0 && is_chosen(row, column, k - n)) ||
+           (down + 1 < n && is_chosen(row, column, k + n));
+  }
   /// Of one of the block's rows.
   std::size_t pixel_of(int row, int column) const {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(width_) +
            static_cast<std::size_t>(column);
   }
+  bool is_of_block(int row, int column) const {
+    return row >= 0 && row < rows_.row_count && column >= 0 && column < width_;
+  }
+  std::vector<LightDescription> lights_of(const std::vector<std::uint32_t>& lamps) const {
+    std::vector<LightDescription> lights;
+    for (const std::uint32_t lamp : lamps) lights.push_back(viewer_.lights[lamp]);
+    return lights;
+  }
   bool is_sampled(int row, int column) const {
     return row >= first_seen_ && row < end_seen_ && column >= 0 && column < width_ && !has_fit(row, column);
+  }
+  bool samples_lamps(int row, int column) const {
+    return has_fit(row, column) && !fits_.at(row, column)->sampled_lamps.empty();
+  }
+  /// Calls visit(row, column) for pixels that see what lies in one, and says whether any returned true. What
+  /// lies outside of the block is there for the block alone.
+  template <typename Visit>
+  bool any_around(int row, int column, const Visit& visit) const {
+    const bool of_block = row >= 0 && row < rows_.row_count;
+    for (int other = row - margin_; other <= row + margin_; ++other) {
+      if (!of_block && (other < 0 || other >= rows_.row_count)) continue;
+      for (int right = -margin_; right <= margin_; ++right)
+        if (visit(other, column + right)) return true;
+    }
+    return false;
   }
 
   const Viewer& viewer_;
@@ -119,8 +161,8 @@ class BlockTracer {
   const FilterSum lattice_filter_ = pixels_.filter.on_lattice(pixels_.subpixels);
   const FilterSum few_ = pixels_.filter.by_few();
   const int margin_ = pixels_.filter.margin_pixels(), reach_ = std::max(margin_, 1);
-  int sampled_around_ = margin_;     // pixels about one that needs samples
-  const int first_seen_, end_seen_;  // pixels of the image that the block has to know of
+  const Lattice::Choice* chosen_ = nullptr;  // the only samples that are taken
+  const int first_seen_, end_seen_;          // pixels of the image that the block has to know of
   TracedRows rows_;
   Fits fits_;
   std::optional<PixelProbes> probes_;
@@ -145,37 +187,50 @@ std::optional<FittedPixel> BlockTracer::fit(int row, int column) const {
   const ProbesOfFit probes = probes_->of_fit(row, column);
   const PixelFit fitted(stencil, probes, repeating_steps(stencil, probes));
   FittedPixel pixel;
-  pixel.radiance = fitted.radiance(few_);
-  if (!hit) return pixel;
+  if (!hit) {
+    pixel.radiance = fitted.radiance(few_);
+    return pixel;
+  }
   pixel.footprint = fitted.footprint(few_);
   pixel.normal = middle.normal;
   const FitLimits limits{pixels_.tolerance, std::max(1, pixels_.subpixels * pixels_.subpixels)};
-  for (std::size_t lamp = 0; lamp < middle.lamps.size(); ++lamp) {
-    if (!fitted.sees(lamp)) continue;
-    if (fitted.penumbra_residual(lamp) > kMostPenumbraResidual ||
-        !fitted.ask(lamp, few_, limits, &pixel.queries))
-      return std::nullopt;
+  const std::vector<bool> edges = probes_->edges(row, column);
+  const auto asks = [&](std::size_t part) {
+    return !edges[part] && (!fitted.sees(part) || (fitted.penumbra_residual(part) <= kMostPenumbraResidual &&
+                                                   fitted.ask(part, few_, limits, &pixel.queries)));
+  };
+  std::size_t seen = 0;
+  for (std::size_t first = 0, end = 0; first < edges.size(); first = end) {
+    const std::uint32_t light = middle.lamps[first].light;  // of which all parts are fitted, or none
+    const std::size_t asked = pixel.queries.size();
+    bool is_seen = false, is_fitted = true;
+    for (end = first; end < edges.size() && middle.lamps[end].light == light; ++end) {
+      is_seen = is_seen || edges[end] || fitted.sees(end);
+      is_fitted = is_fitted && asks(end);
+    }
+    seen += is_seen ? 1 : 0;
+    if (is_fitted) continue;
+    pixel.queries.resize(asked);
+    pixel.sampled_lamps.push_back(light);
   }
+  if (static_cast<double>(pixel.sampled_lamps.size()) > kMostSampledLamps * static_cast<double>(seen))
+    return std::nullopt;
+  pixel.radiance = fitted.radiance(few_, pixel.sampled_lamps);
   for (GlintQuery& query : pixel.queries) query.material = middle.material;
   return pixel;
 }
 
-/// Pixels without a fit need the samples of all pixels that their filter reaches.
+/// Pixels without a fit need the samples of all pixels that their filter reaches; with one, of some lamps.
 void BlockTracer::place_samples() {
-  const int around = sampled_around_;
   Lattice& lattice = rows_.lattice;
   lattice.first_sample.assign(lattice.cell(rows_.row_count + margin_, -margin_), Lattice::kNone);
   std::uint32_t count = 0;
   for (int row = -margin_; row < rows_.row_count + margin_; ++row)
     for (int column = -margin_; column < width_ + margin_; ++column) {
-      bool needed = false;
-      for (int down = -around; down <= around && !needed; ++down)
-        for (int right = -around; right <= around && !needed; ++right) {
-          const bool of_block = row >= 0 && row < rows_.row_count;
-          // What lies outside of the block is there for the block alone.
-          const int other = row + down;
-          needed = (of_block || (other >= 0 && other < rows_.row_count)) && is_sampled(other, column + right);
-        }
+      const bool needed = chosen_ ? !(*chosen_)[lattice.cell(row, column)].empty()
+                                  : any_around(row, column, [&](int y, int x) {
+                                      return is_sampled(y, x) || samples_lamps(y, x);
+                                    });
       if (!needed) continue;
       lattice.first_sample[lattice.cell(row, column)] = count;
       count += static_cast<std::uint32_t>(pixels_.subpixels * pixels_.subpixels);
@@ -190,6 +245,7 @@ void BlockTracer::write_fits(int row, RowQueries* queries) {
     const std::size_t pixel = pixel_of(row, column);
     rows_.fitted[pixel] = 1;
     rows_.radiance[pixel] = fitted->radiance.cast<float>();
+    rows_.sampled_lamps[pixel] = fitted->sampled_lamps;
     PixelMeans means;
     if (fitted->footprint) means.add(*fitted->footprint, fitted->normal);
     means.write(&rows_, pixel);
@@ -209,40 +265,83 @@ void BlockTracer::sample_row(int row, RowQueries* queries) {
   }
 }
 
-void BlockTracer::sample_cell(int row, int column, std::uint32_t first_sample, RowQueries* queries) {
+WantedLamps BlockTracer::wanted_lamps(int row, int column) const {
+  WantedLamps wanted{chosen_ != nullptr, {}};
+  if (wanted.all) return wanted;
+  std::vector<bool> some(viewer_.lights.size(), false);
+  any_around(row, column, [&](int y, int x) {
+    wanted.all = wanted.all || is_sampled(y, x);
+    if (samples_lamps(y, x))
+      for (const std::uint32_t lamp : fits_.at(y, x)->sampled_lamps) some[lamp] = true;
+    return false;
+  });
+  for (std::uint32_t lamp = 0; lamp < some.size(); ++lamp)
+    if (some[lamp]) wanted.some.push_back(lamp);
+  return wanted;
+}
+
+std::vector<SeenPoint> BlockTracer::look(const Viewer& viewer, int row, int column) const {
   const int n = pixels_.subpixels;
   std::vector<SeenPoint> points;
   for (int k = 0; k < n * n; ++k) {
     const int right = k % n, down = k / n;
-    if (!is_seen(row * n + down, column * n + right)) {
+    if (!is_seen(row * n + down, column * n + right) || !is_near_chosen(row, column, k)) {
       points.emplace_back();
       continue;
     }
-    points.push_back(viewer_.look(first_column_ + column + (right + 0.5) / n,
-                                  first_row_ + row + (down + 0.5) / n,
-                                  {{light_sample(key(row, column), k, n)}, pixels_.lamp_parts}));
+    points.push_back(viewer.look(first_column_ + column + (right + 0.5) / n,
+                                 first_row_ + row + (down + 0.5) / n,
+                                 {{light_sample(key(row, column), k, n)}, pixels_.lamp_parts}));
   }
+  return points;
+}
+
+void BlockTracer::sample_cell(int row, int column, std::uint32_t first_sample, RowQueries* queries) {
+  const WantedLamps wanted = wanted_lamps(row, column);
+  Viewer viewer = viewer_;
+  if (!wanted.all) viewer.lights = lights_of(wanted.some);
+  const std::vector<SeenPoint> points = look(viewer, row, column);
   const std::vector<std::vector<Eigen::Matrix2d>> turns = turns_of(points);
   // A pixel that was fitted has queries of its own: samples in it are there for its neighbours.
-  const bool owned =
-      row >= 0 && row < rows_.row_count && column >= 0 && column < width_ && !has_fit(row, column);
-  const auto pixel = owned ? static_cast<std::uint32_t>(row * width_ + column) : GlintQuery::kNone;
-  const std::size_t before = queries->size();
+  const bool owned = is_of_block(row, column) && !has_fit(row, column);
+  const auto pixel = owned ? static_cast<std::uint32_t>(pixel_of(row, column)) : GlintQuery::kNone;
+  const std::size_t before = queries->size(), first_glint = queries->glints.size();
   PixelMeans means;
   for (std::size_t k = 0; k < points.size(); ++k) {
     const SeenPoint& point = points[k];
     const auto sample = first_sample + static_cast<std::uint32_t>(k);
     rows_.sample_radiance[sample] = point.radiance.cast<float>();
-    if (!point.hit) continue;
+    if (!point.hit || !is_chosen(row, column, static_cast<int>(k))) continue;
     means.add({wrap(point.uv), footprint_covariance(point.duv, lattice_filter_.sigma_pixels)}, point.frame.z);
-    if (point.faces_eye)
-      viewer_.ask(point, lattice_filter_.sigma_pixels,
-                  {pixel, sample, key(row, column), static_cast<std::uint32_t>(k)}, turns[k], queries);
+    if (!point.faces_eye) continue;
+    viewer.ask(point, lattice_filter_.sigma_pixels,
+               {pixel, sample, key(row, column), static_cast<std::uint32_t>(k)}, turns[k], queries);
+    for (const SeenLamp& lamp : point.lamps) {
+      const std::uint32_t light = wanted.all ? lamp.light : wanted.some[lamp.light];
+      if (lamp.visible > 0 && std::binary_search(wanted.some.begin(), wanted.some.end(), light))
+        queries->lamp_samples.push_back(
+            {sample, light, lamp.seen.smooth.cwiseProduct(lamp.incident.irradiance).cast<float>()});
+    }
   }
+  for (std::size_t n = first_glint; n < queries->glints.size() && !wanted.all; ++n)
+    queries->glints[n].light = wanted.some[queries->glints[n].light];
+  if (samples_lamps(row, column) && is_of_block(row, column)) own_lamps(row, column, first_glint, queries);
   if (!owned) return;
   means.write(&rows_, pixel);
   rows_.query_count[pixel] =
       static_cast<std::uint16_t>(std::min<std::size_t>(queries->size() - before, 65535));
+}
+
+/// Samples of a fitted pixel belong to it where they are of lamps that it needs them of.
+void BlockTracer::own_lamps(int row, int column, std::size_t first_glint, RowQueries* queries) {
+  const std::vector<std::uint32_t>& lamps = fits_.at(row, column)->sampled_lamps;
+  const std::size_t pixel = pixel_of(row, column);
+  for (std::size_t n = first_glint; n < queries->glints.size(); ++n) {
+    GlintQuery& query = queries->glints[n];
+    if (!std::binary_search(lamps.begin(), lamps.end(), query.light)) continue;
+    query.pixel = static_cast<std::uint32_t>(pixel);
+    if (rows_.query_count[pixel] < 65535) ++rows_.query_count[pixel];
+  }
 }
 
 /// A lamp's half vector's change a pixel to the right and down, at point k of a pixel of n x n: by
@@ -306,8 +405,8 @@ TracedRows trace_rows(const Viewer& viewer, const PixelSettings& pixels, const I
 }
 
 TracedRows sample_rows(const Viewer& viewer, const PixelSettings& pixels, const ImagePart& part,
-                       const std::vector<bool>& which) {
-  return BlockTracer(viewer, pixels, part).sample(which);
+                       const Lattice::Choice& chosen) {
+  return BlockTracer(viewer, pixels, part).sample(chosen);
 }
 
 }  // namespace mica::host

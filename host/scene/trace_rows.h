@@ -14,8 +14,8 @@ struct ImagePart {
 /// Traces a part of an image; see Scene. Of whole rows, if pixels are to be fitted.
 TracedRows trace_rows(const Viewer& viewer, const PixelSettings& pixels, const ImagePart& part);
 
-/// Samples some pixels of a part and those around them, see Scene::sample.
+/// Takes some samples of a part, see Scene::sample.
 TracedRows sample_rows(const Viewer& viewer, const PixelSettings& pixels, const ImagePart& part,
-                       const std::vector<bool>& which);
+                       const Lattice::Choice& chosen);
 
 }  // namespace mica::host

@@ -84,6 +84,7 @@ struct RowQueries {
   std::vector<GlintQuery> glints;
   std::vector<LitPoint> points;
   std::vector<LitBrdf> lit;
+  std::vector<LampSample> lamp_samples;
 
   std::size_t size() const { return glints.size() + lit.size(); }
 };
