@@ -173,11 +173,17 @@ TEST(Pyramid, DropsOnlyWhatIsBelowTheCutoff) {
 }
 
 /// Normals change by many cells a texel here, so that wide elements share a record with narrow ones: of these
-/// the record's numbers must still leave a covariance.
+/// the record's numbers must still leave a covariance. Four periods, so that normals meet again and merge.
 TEST(Pyramid, AnswersSteepMaps) {
-  const Surface surface =
-      make_surface({"test", SpectrumSurface{32, 5, 2, 1}, Interpolation::bilinear}, nullptr);
-  PyramidEvaluator pyramid(device(), surface);
+  constexpr int period = 32, side = 2 * period;
+  const Surface steep =
+      make_surface({"test", SpectrumSurface{period, 5, 2, 1}, Interpolation::bilinear}, nullptr);
+  std::vector<Eigen::Vector2d> normals;
+  for (int n = 0; n < side * side; ++n) normals.push_back(steep.texel(n % side, n / side));
+  const Surface surface(side, side, Interpolation::bilinear, std::move(normals));
+  PyramidSettings settings;
+  settings.levels_bytes = std::size_t{128} << 20;
+  PyramidEvaluator pyramid(device(), surface, settings);
   const std::vector<Query> queries = random_queries(surface, 14, 14, 0.0029, 400);
   ASSERT_TRUE(pyramid.choose(queries.front()));
   for (const float density : pyramid.evaluate(queries)) ASSERT_TRUE(std::isfinite(density));
