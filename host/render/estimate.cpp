@@ -14,6 +14,12 @@ namespace {
 constexpr int kSampleRows = 48;
 constexpr std::size_t kSampleQueries = 8192;
 constexpr std::size_t kSamplePoints = 512;  // where light is gathered
+constexpr std::size_t kFewestSamples = 64, kSampleShare = 16;
+
+/// As many of all are measured, three times over: never more than rendering asks for.
+std::size_t sample_size(std::size_t all, std::size_t most) {
+  return std::clamp(all / kSampleShare, kFewestSamples, most);
+}
 
 /// Adds every n-th item of one row, so that about `target` are taken of `all` in all rows.
 template <typename Item>
@@ -71,8 +77,8 @@ Gathered measure_gathering(const BuiltJob& built, Device& device, const std::vec
   for (const TracedRows& row : rows) {
     if (row.sample_radiance.size() > sample.sample_radiance.size())
       sample.sample_radiance = row.sample_radiance;  // all samples have their place
-    append_some(row.points, all, kSamplePoints, &sample.points);
-    append_some(row.lit, all, kSamplePoints, &sample.lit);
+    append_some(row.points, all, sample_size(all, kSamplePoints), &sample.points);
+    append_some(row.lit, all, sample_size(all, kSamplePoints), &sample.lit);
   }
   const std::size_t measured = sample.points.size() + sample.lit.size();
   const auto gather = [&] {
@@ -161,7 +167,8 @@ struct Evaluated {
 Evaluated measure_densities(const BuiltJob& built, Device& device, const SampledRows& sampled) {
   TracedRows sample;
   for (const TracedRows& row : sampled.rows)
-    append_some(row.queries, sampled.all_queries, kSampleQueries, &sample.queries);
+    append_some(row.queries, sampled.all_queries, sample_size(sampled.all_queries, kSampleQueries),
+                &sample.queries);
   const std::size_t count = sample.queries.size();
   if (!count) return {};
   const auto evaluate = [&] { PendingBlock(sample, built).wait(); };

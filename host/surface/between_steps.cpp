@@ -13,8 +13,8 @@ namespace {
 using Complex = std::complex<float>;
 using Gains = LocalFilter::Gains;
 
-constexpr int kSmoothIterations = 160;
 constexpr float kRounding = 1.0f / 12;
+constexpr std::uint64_t kPlacesStream = 1u << 20;  // of random numbers; iterations have those before
 constexpr float kLeastPower = 1e-5f;
 /// Powers of rounding are guesses from few windows: what is little more than they are may be rounding, too.
 constexpr float kOverSubtraction = 2;
@@ -34,10 +34,10 @@ PairGrid of_each(const PairGrid& grid, const Function& function) {
   return result;
 }
 
-PairGrid smoothest(int side, const PairGrid& rounded) {
+PairGrid smoothest(int side, const PairGrid& rounded, int iterations) {
   RoundedGrid u{side, side, {}}, v{side, side, {}};
   for (const Complex& value : rounded) u.values.push_back(value.real()), v.values.push_back(value.imag());
-  restore_steps(kSmoothIterations, &u, &v);
+  restore_steps(iterations, &u, &v);
   PairGrid grid(rounded.size());
   for (std::size_t n = 0; n < grid.size(); ++n) grid[n] = {u.values[n], v.values[n]};
   return grid;
@@ -127,17 +127,29 @@ PairGrid sum_of(const PairGrid& a, const PairGrid& b, float weight_of_b = 1) {
 
 }  // namespace
 
-BetweenSteps between_steps(int side, const PairGrid& rounded, int draws, std::uint64_t seed) {
+PairGrid anywhere_between_steps(const PairGrid& rounded, std::uint64_t seed) {
+  PairGrid places = rounded;
+  for (std::size_t n = 0; n < places.size(); ++n) {
+    const auto place = [&](std::uint64_t index) {
+      return static_cast<float>(random_unit(seed, kPlacesStream, index) - 0.5);
+    };
+    places[n] += Complex(place(2 * n), place(2 * n + 1));
+  }
+  return places;
+}
+
+BetweenSteps between_steps(int side, const PairGrid& rounded, int draws, int smoothing, std::uint64_t seed) {
   const LocalFilter filter(side);
-  const PairGrid smooth = smoothest(side, rounded);
+  const PairGrid smooth = smoothest(side, rounded, smoothing);
   const Prior prior(filter, rounded, smooth);
   const auto window_share = [&](std::size_t, std::size_t window, std::size_t, int axis) {
     return prior.rough[window][axis];
   };
   const Gains rough = gains_of(filter, window_share);
   BetweenSteps found;
-  // Where texels are rough, any place is as good, and draws would take long to leave a bound.
-  found.draw = sum_of(smooth, filter.filtered(sum_of(rounded, smooth, -1), rough));
+  // Where texels are rough, any place is as good, and draws would take long to get there.
+  const PairGrid anywhere = anywhere_between_steps(rounded, seed);
+  found.draw = sum_of(smooth, filter.filtered(sum_of(anywhere, smooth, -1), rough));
   PairGrid sum(rounded.size());
   const int unused = draws / 3;
   for (int iteration = 0; iteration < unused + draws; ++iteration) {

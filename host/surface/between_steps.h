@@ -19,6 +19,10 @@ struct BetweenSteps {
 /// sampler's [Geman and Geman 1984]; the mean is theirs where texels are smooth, and elsewhere Wiener's.
 /// @param rounded in steps, of a periodic square. @param side a multiple of LocalFilter::kHop, at least
 /// LocalFilter::kWindow. @param draws after a third as many that are not counted.
-BetweenSteps between_steps(int side, const PairGrid& rounded, int draws, std::uint64_t seed);
+/// @param smoothing iterations of the smoothest numbers, see restore_steps.
+BetweenSteps between_steps(int side, const PairGrid& rounded, int draws, int smoothing, std::uint64_t seed);
+
+/// Numbers that are uniform in their intervals: all that is known where steps are small.
+PairGrid anywhere_between_steps(const PairGrid& rounded, std::uint64_t seed);
 
 }  // namespace mica::host

@@ -267,20 +267,34 @@ class Decoder {
   Tally invalid_, unnormalised_, beyond_rim_;
 };
 
-/// The step of half floats where most normals are: theirs halves with every halving of a number.
-double half_float_step(const std::vector<Eigen::Vector2d>& normals) {
-  constexpr int mantissa_bits = 10, least_exponent = -14;
-  double sum = 0;
-  for (const Eigen::Vector2d& s : normals) sum += s.squaredNorm();
-  const double mean_square = sum / (2 * static_cast<double>(normals.size()));
-  const int exponent = mean_square > 0 ? std::ilogb(std::sqrt(mean_square)) : least_exponent;
-  return std::exp2(std::max(exponent, least_exponent) - mantissa_bits);
+/// The step whose rounding has the variance that the half floats' has on average.
+double mean_step(const std::vector<Eigen::Vector2d>& normals, Encoding encoding) {
+  const double scale = encoding == Encoding::unorm ? 2 : 1, middle = scale - 1;
+  double squares = 0;
+  for (const Eigen::Vector2d& s : normals)
+    for (const double n : s) squares += std::pow(scale * half_float_step((n + middle) / scale), 2);
+  return std::sqrt(squares / (2 * static_cast<double>(normals.size())));
+}
+
+/// What the file tells of normals, of those that it gave.
+Surface::Steps steps_of(const MapFile& file, Encoding encoding, const MapPixels& pixels,
+                        const std::vector<Eigen::Vector2d>& normals) {
+  Surface::Steps steps;
+  steps.step = slope_step(file, encoding, pixels);
+  steps.widens = file.precision == Precision::widen;
+  const bool of_normals = encoding == Encoding::unorm || encoding == Encoding::signed_float;
+  if (of_normals && pixels.channels.size() == 3) steps.third = static_cast<float>(steps.step);
+  if (steps.step > 0 && encoding != Encoding::height && pixels.type == MapPixels::Type::floating) {
+    steps.step = mean_step(normals, encoding);
+    steps.halves = encoding != Encoding::unorm;
+  }
+  return steps;
 }
 
 }  // namespace
 
 std::vector<Eigen::Vector2d> decode_normals(const MapFile& file, const MapPixels& pixels,
-                                            SurfaceReport& report, double* step) {
+                                            SurfaceReport& report, Surface::Steps* steps) {
   if (!std::isfinite(file.height_scale)) {
     throw UsageError(
         fmt::format("{}: height_scale is {}, expected a finite number", file.path, file.height_scale));
@@ -293,28 +307,22 @@ std::vector<Eigen::Vector2d> decode_normals(const MapFile& file, const MapPixels
   if (encoding == Encoding::height && file.precision == Precision::restore)
     throw UsageError(file.path + ": precision \"restore\" is for normals; found heights");
   std::vector<Eigen::Vector2d> normals = Decoder(file, encoding, pixels, report).decode();
-  if (step != nullptr) {
-    *step = slope_step(file, encoding, pixels);
-    const bool is_signed = encoding == Encoding::signed_float || encoding == Encoding::slope;
-    if (*step > 0 && is_signed && pixels.type == MapPixels::Type::floating) *step = half_float_step(normals);
-  }
+  if (steps != nullptr) *steps = steps_of(file, encoding, pixels, normals);
   return normals;
 }
 
 Surface load_map(const MapFile& file, Interpolation interpolation, SurfaceReport& report) {
   const MapPixels pixels = read_map_pixels(file.path, report, file.choice);
-  double step = 0;
-  std::vector<Eigen::Vector2d> normals = decode_normals(file, pixels, report, &step);
-  const bool restores = file.precision == Precision::restore && step > 0;
+  Surface::Steps steps;
+  std::vector<Eigen::Vector2d> normals = decode_normals(file, pixels, report, &steps);
+  const bool restores = file.precision == Precision::restore && steps.step > 0;
   if (restores) {
-    restore_normals(pixels.width, pixels.height, step, &normals);
+    restore_normals(pixels.width, pixels.height, steps.step, &normals);
     report.notes.push_back(
-        fmt::format("normals restored between steps of {:.2g} where their neighbours tell", step));
+        fmt::format("normals restored between steps of {:.2g} where their neighbours tell", steps.step));
   }
   Surface surface(pixels.width, pixels.height, interpolation, std::move(normals));
-  // Of what is left after that no number is known.
-  const bool scaled = pixels.channels.size() == 3;
-  if (!restores) surface.note_steps({step, file.precision == Precision::widen, scaled});
+  if (!restores) surface.note_steps(steps);  // of what is left after that no number is known
   return surface;
 }
 

@@ -18,8 +18,8 @@ namespace mica::host {
 Surface load_map(const MapFile& file, Interpolation interpolation, SurfaceReport& report);
 
 /// The second half of load_map: pixels to normals, row v near 0 first.
-/// @param step gets the step between the values of s that the pixels tell, when it is not null.
+/// @param steps gets the steps between the values that the pixels tell, when it is not null.
 std::vector<Eigen::Vector2d> decode_normals(const MapFile& file, const MapPixels& pixels,
-                                            SurfaceReport& report, double* step = nullptr);
+                                            SurfaceReport& report, Surface::Steps* steps = nullptr);
 
 }  // namespace mica::host

@@ -13,15 +13,18 @@
 #include "host/surface/disk.h"
 #include "host/surface/facets.h"
 #include "host/surface/features.h"
+#include "host/surface/tile_density.h"
 
 namespace mica::host {
 namespace {
 
 constexpr double kSigmaTexels = 24, kFootprintReach = 2.5;  // of footprints; standard deviations
 constexpr int kMargin = 35;                                 // of a tile, whose edges are no neighbours
-constexpr std::size_t kTiles = 3;
+constexpr std::size_t kTiles = 4;
+constexpr int kHalfVectors = 128, kFewestHalfVectors = 8, kMostLookedAt = 400'000;  // of a tile
 constexpr int kDrawsOfError = 3, kDrawsOfMean = 10;
-constexpr int kRestored = 256, kRestoredMargin = 64;  // texels a side that are restored at a time
+constexpr int kSmoothingOfError = 40, kSmoothingOfMean = 160;  // iterations
+constexpr int kRestored = 256, kRestoredMargin = 64;           // texels a side that are restored at a time
 
 /// A square of the surface, in steps.
 struct Tile {
@@ -38,16 +41,28 @@ struct Tile {
         normals.emplace_back(static_cast<float>(steps.x()), static_cast<float>(steps.y()));
       }
   }
-  Eigen::Vector2f at(int i, int j) const {
-    const std::complex<float>& normal = normals[static_cast<std::size_t>(j) * side + i];
-    return {normal.real(), normal.imag()};
-  }
 };
+
+/// Whether steps are lost in what texels differ by: then nothing is known between them.
+bool is_rough(const Tile& tile) {
+  constexpr float few_steps = 4;
+  constexpr double hardly_any = 0.004;
+  const auto is_near = [](float a, float b) { return std::abs(a - b) < few_steps; };
+  int near = 0;
+  for (std::size_t n = 0; n + tile.side < tile.normals.size(); ++n)
+    for (const std::size_t other : {n + 1, n + tile.side}) {
+      const std::complex<float>&a = tile.normals[n], &b = tile.normals[other];
+      near += is_near(a.real(), b.real()) || is_near(a.imag(), b.imag());
+    }
+  return near < hardly_any * 2 * static_cast<double>(tile.normals.size());
+}
 
 /// Another surface that rounds to the tile.
 Tile another(const Tile& tile, std::uint64_t seed) {
   Tile other = tile;
-  other.normals = between_steps(tile.side, tile.normals, kDrawsOfError, seed).draw;
+  other.normals = is_rough(tile)
+                      ? anywhere_between_steps(tile.normals, seed)
+                      : between_steps(tile.side, tile.normals, kDrawsOfError, kSmoothingOfError, seed).draw;
   const Facets facets = find_facets(tile.side, tile.normals);
   for (std::size_t n = 0; n < facets.of_texel.size(); ++n) {
     const int facet = facets.of_texel[n];
@@ -64,17 +79,28 @@ Tile another(const Tile& tile, std::uint64_t seed) {
 
 /// The third coordinate's rounding is in a normal's length, which it was divided by: a change from plateau to
 /// plateau, that no sum over texels evens out.
-void undo_scaling(double step, Tile* tile) {
+void undo_scaling(double step, double third_step, Tile* tile) {
   for (std::complex<float>& normal : tile->normals) {
     const double square = step * step * std::norm(normal), z = std::sqrt(std::max(1 - square, 0.0)),
-                 rounded_z = std::round((z + 1) / step) * step - 1;
+                 rounded_z = std::round((z + 1) / third_step) * third_step - 1;
     normal *= static_cast<float>(std::sqrt(square + rounded_z * rounded_z));
+  }
+}
+
+/// Puts normals between half floats about the tile's, in place of steps that are equal.
+void shrink_to_half_floats(const Tile& tile, double step, Tile* other) {
+  const auto shrunk = [&](float rounded, float found) {
+    return rounded + static_cast<float>(half_float_step(rounded * step) / step) * (found - rounded);
+  };
+  for (std::size_t n = 0; n < other->normals.size(); ++n) {
+    const std::complex<float>&rounded = tile.normals[n], &found = other->normals[n];
+    other->normals[n] = {shrunk(rounded.real(), found.real()), shrunk(rounded.imag(), found.imag())};
   }
 }
 
 /// The best guess of a tile's normals.
 PairGrid restored(const Tile& tile, std::uint64_t seed) {
-  PairGrid normals = between_steps(tile.side, tile.normals, kDrawsOfMean, seed).mean;
+  PairGrid normals = between_steps(tile.side, tile.normals, kDrawsOfMean, kSmoothingOfMean, seed).mean;
   const Facets facets = find_facets(tile.side, tile.normals);
   for (std::size_t n = 0; n < normals.size(); ++n) {
     const int facet = facets.of_texel[n];
@@ -86,89 +112,29 @@ PairGrid restored(const Tile& tile, std::uint64_t seed) {
   return normals;
 }
 
-/// A P-NDF as a picture over the normals under a footprint, blurred by the roughness.
-class NormalPicture {
- public:
-  /// @param low, high of normals, in steps. @param sigma of the roughness.
-  NormalPicture(const Eigen::Vector2f& low, const Eigen::Vector2f& high, double sigma)
-      : low_(low.array() - static_cast<float>(4 * sigma)),
-        bin_(std::max(sigma / 3, (high - low).maxCoeff() / 768.0)),
-        sigma_bins_(std::sqrt(std::max(sigma * sigma / (bin_ * bin_) - 1.0 / 6, 0.05))) {
-    const Eigen::Vector2f size = high - low;
-    for (const int axis : {0, 1}) counts_[axis] = static_cast<int>((size[axis] + 8 * sigma) / bin_) + 3;
-    bins_.assign(static_cast<std::size_t>(counts_[0]) * counts_[1], 0.0);
-  }
+/// Sums over half vectors drawn from the mean of two densities a and b: of (a - b)^2 and of b^2, each over
+/// that mean. Fewer where each sees much of the map: there densities vary less.
+struct SquaredSums {
+  double difference = 0, square = 0;
 
-  void add(const Eigen::Vector2f& normal, double weight) {
-    const Eigen::Array2d place = ((normal - low_).cast<double>() / bin_).array().max(0.0);
-    const int x = std::min(static_cast<int>(place.x()), counts_[0] - 2),
-              y = std::min(static_cast<int>(place.y()), counts_[1] - 2);
-    const double f = place.x() - x, g = place.y() - y;
-    double* bin = &bins_[static_cast<std::size_t>(y) * counts_[0] + x];
-    bin[0] += weight * (1 - f) * (1 - g), bin[1] += weight * f * (1 - g);
-    bin[counts_[0]] += weight * (1 - f) * g, bin[counts_[0] + 1] += weight * f * g;
-  }
-
-  void blur() {
-    const int reach = static_cast<int>(std::ceil(4 * sigma_bins_));
-    std::vector<double> taps;
-    for (int n = -reach; n <= reach; ++n)
-      taps.push_back(std::exp(-0.5 * n * n / (sigma_bins_ * sigma_bins_)));
-    for (const int axis : {0, 1}) {
-      std::vector<double> blurred(bins_.size(), 0.0);
-      const std::ptrdiff_t stride = axis == 0 ? 1 : counts_[0];
-      for (int y = 0; y < counts_[1]; ++y)
-        for (int x = 0; x < counts_[0]; ++x) {
-          const std::ptrdiff_t place = static_cast<std::ptrdiff_t>(y) * counts_[0] + x;
-          const double value = bins_[static_cast<std::size_t>(place)];
-          if (value == 0) continue;
-          const int n = axis == 0 ? x : y;
-          for (int tap = std::max(-reach, -n); tap <= std::min(reach, counts_[axis] - 1 - n); ++tap)
-            blurred[static_cast<std::size_t>(place + tap * stride)] += value * taps[tap + reach];
-        }
-      bins_ = std::move(blurred);
+  SquaredSums(const TileDensity& first, const TileDensity& second, std::uint64_t seed) {
+    int looked_at = 0;
+    for (int n = 0; n < kHalfVectors && (n < kFewestHalfVectors || looked_at < kMostLookedAt); ++n) {
+      const Eigen::Vector2f half_vector = (n % 2 == 0 ? first : second).draw(seed, n);
+      const double a = first.at(half_vector, &looked_at), b = second.at(half_vector, &looked_at),
+                   mean = 0.5 * (a + b);
+      if (mean > 0) difference += (a - b) * (a - b) / mean, square += b * b / mean;
     }
   }
-  const std::vector<double>& bins() const { return bins_; }
-
- private:
-  Eigen::Vector2f low_;
-  double bin_, sigma_bins_;
-  int counts_[2] = {0, 0};
-  std::vector<double> bins_;
 };
 
-/// Adds the interpolated normals under a Gaussian footprint in the tile's middle.
-void add_footprint(const Tile& tile, Interpolation interpolation, double sigma, double roughness_steps,
-                   NormalPicture* picture) {
-  const double middle = 0.5 * tile.side;
-  for (int j = kMargin; j + kMargin < tile.side; ++j) {
-    for (int i = kMargin; i + kMargin < tile.side; ++i) {
-      const Eigen::Vector2f corner = tile.at(i, j), right = tile.at(i + 1, j), up = tile.at(i, j + 1),
-                            far = tile.at(i + 1, j + 1);
-      const double change = std::max({(right - corner).norm(), (up - corner).norm(), (far - corner).norm()});
-      const bool is_flat = interpolation == Interpolation::nearest;
-      const int parts =
-          is_flat ? 1 : static_cast<int>(std::clamp(2 * change / roughness_steps + 1, 2.0, 6.0));
-      for (int b = 0; b < parts; ++b) {
-        for (int a = 0; a < parts; ++a) {
-          const float x = (static_cast<float>(a) + 0.5f) / static_cast<float>(parts),
-                      y = (static_cast<float>(b) + 0.5f) / static_cast<float>(parts);
-          const double dx = i + x - middle, dy = j + y - middle;
-          const double weight = std::exp(-0.5 * (dx * dx + dy * dy) / (sigma * sigma)) / (parts * parts);
-          // The two triangles of a quad, split from (i + 1, j) to (i, j + 1).
-          const Eigen::Vector2f normal =
-              is_flat     ? corner
-              : x + y < 1 ? Eigen::Vector2f(corner + x * (right - corner) + y * (up - corner))
-                          : Eigen::Vector2f(far + (1 - x) * (up - far) + (1 - y) * (right - far));
-          picture->add(normal, weight);
-        }
-      }
-    }
-  }
-}
-
 }  // namespace
+
+double half_float_step(double number) {
+  constexpr int mantissa_bits = 10, least_exponent = -14;
+  const int exponent = number != 0 ? std::max(std::ilogb(number), least_exponent) : least_exponent;
+  return std::exp2(exponent - mantissa_bits);
+}
 
 void restore_normals(int width, int height, double step, std::vector<Eigen::Vector2d>* normals) {
   const std::vector<Eigen::Vector2d> rounded = *normals;
@@ -209,22 +175,13 @@ double precision_error(const Surface& surface, double roughness) {
     const Tile tile(place(0, surface.width()), place(1, surface.height()), side,
                     [&](long i, long j) -> Eigen::Vector2d { return surface.texel(i, j) / surface.step(); });
     Tile other = another(tile, n);
-    if (surface.scaled()) undo_scaling(surface.step(), &other);
-    Eigen::Vector2f low = tile.at(0, 0), high = low;
-    for (int k = 0; k < tile.side * tile.side; ++k) {
-      low = low.cwiseMin(tile.at(k % tile.side, k / tile.side));
-      high = high.cwiseMax(tile.at(k % tile.side, k / tile.side));
-    }
-    low.array() -= 1, high.array() += 1;
-    std::array<NormalPicture, 2> pictures = {NormalPicture(low, high, roughness_steps),
-                                             NormalPicture(low, high, roughness_steps)};
-    add_footprint(tile, surface.interpolation(), sigma, roughness_steps, &pictures[0]);
-    add_footprint(other, surface.interpolation(), sigma, roughness_steps, &pictures[1]);
-    for (NormalPicture& picture : pictures) picture.blur();
-    for (std::size_t k = 0; k < pictures[0].bins().size(); ++k) {
-      const double a = pictures[0].bins()[k], b = pictures[1].bins()[k];
-      differences[n] += (a - b) * (a - b), squares[n] += b * b;
-    }
+    if (surface.has_half_floats()) shrink_to_half_floats(tile, surface.step(), &other);
+    if (surface.third_step() > 0) undo_scaling(surface.step(), surface.third_step(), &other);
+    const auto density = [&](const Tile& of) {
+      return TileDensity(of.side, of.normals, surface.interpolation(), kMargin, sigma, roughness_steps);
+    };
+    const SquaredSums sums(density(tile), density(other), kTiles + n);
+    differences[n] = sums.difference, squares[n] = sums.square;
   });
   double difference = 0, square = 0;
   for (std::size_t n = 0; n < kTiles; ++n) difference += differences[n], square += squares[n];

@@ -7,6 +7,9 @@
 
 namespace mica::host {
 
+/// Between a half float and the next one.
+double half_float_step(double number);
+
 /// Normals between those that steps tell, where neighbours tell them; see restore_steps.
 /// @param step of s on the disk. @param normals row by row, changed by half a step at most.
 void restore_normals(int width, int height, double step, std::vector<Eigen::Vector2d>* normals);

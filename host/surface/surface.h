@@ -24,11 +24,13 @@ class Surface {
   struct Steps {
     double step = 0;      ///< between neighbouring values of s; 0: too fine to matter
     bool widens = false;  ///< lobes are wider by the variance of rounding
-    bool scaled = false;  ///< from three numbers in such steps to length 1
+    bool halves = false;  ///< of half floats: `step` is a mean, a number's own is half_float_step
+    float third = 0;  ///< between values of n_z, where all three were scaled to length 1; 0: they were not
   };
   void note_steps(const Steps& steps) { steps_ = steps; }
   double step() const { return steps_.step; }
-  bool scaled() const { return steps_.scaled; }
+  bool has_half_floats() const { return steps_.halves; }
+  double third_step() const { return steps_.third; }
   /// What a lobe's covariance on the disk is wider by, along every axis; see Precision.
   double lobe_variance() const { return steps_.widens ? steps_.step * steps_.step / 12 : 0; }
 

@@ -80,9 +80,13 @@ std::vector<Surface> hard_surfaces() {
   return surfaces;
 }
 
+/// One in 32 is wide: those cost as much as all others.
 Footprint footprint_of(const Surface& surface, double most_texels, QuestionRandom* random) {
-  constexpr double least_texels = 0.01, thinnest = 1.5e-3;
-  const double major = random->log_uniform(least_texels, most_texels);
+  constexpr double least_texels = 0.01, narrow_texels = 3, thinnest = 1.5e-3;
+  constexpr int one_in = 32;
+  const bool is_wide = random->among(one_in) == 0;
+  const double major = is_wide ? random->log_uniform(narrow_texels, most_texels)
+                               : random->log_uniform(least_texels, narrow_texels);
   const double aspect =
       random->among(2) ? random->log_uniform(1, 1400) : 1;  // correlation 1 - 1e-6 at 45 degrees
   const double angle = random->among(2) ? kPi / 4 : random->uniform(0, kPi);

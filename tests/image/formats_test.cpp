@@ -1,6 +1,7 @@
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <string>
@@ -180,19 +181,23 @@ TEST_F(Formats, WindowsArePlacedOrCut) {
 }
 
 TEST_F(Formats, OrientationIsHonoured) {
-  // 2 x 1 pixels, a and b, as each of the eight values of Exif shows them, row by row.
-  const std::vector<float> a = {0.2f, 0.2f, 0.2f}, b = {0.4f, 0.4f, 0.4f};
+  // Of 2 x 2 pixels, a b above c d, what each of the eight values of Exif shows, row by row.
+  const std::array<std::string, 8> shown = {"abcd", "badc", "dcba", "cdab", "acbd", "cadb", "dbca", "bdac"};
   for (int orientation = 1; orientation <= 8; ++orientation) {
-    ImageSpec spec(2, 1, 3);
+    ImageSpec spec(2, 2, 3);
     spec.attribute("Orientation", orientation);
-    const std::string file =
-        write<std::uint8_t>("o" + std::to_string(orientation) + ".tif", spec, {51, 51, 51, 102, 102, 102});
+    const std::string file = write<std::uint8_t>("o" + std::to_string(orientation) + ".tif", spec,
+                                                 {51, 51, 51, 102, 102, 102, 153, 153, 153, 204, 204, 204});
     const Picture picture = read_picture(file, {}, PictureUse::map, nullptr);
-    EXPECT_EQ(picture.width, orientation > 4 ? 1 : 2) << orientation;
-    EXPECT_EQ(picture_size(file, {}, PictureUse::map).width, picture.width) << orientation;
-    // 2, 3: the row runs to the left; 7, 8: the row runs upwards.
-    const bool turned = orientation == 2 || orientation == 3 || orientation == 7 || orientation == 8;
-    EXPECT_NEAR(picture.pixels[0], turned ? 0.4f : 0.2f, 1e-6f) << orientation;
+    std::string found;
+    for (std::size_t n = 0; n < picture.pixels.size(); n += 3)
+      found += static_cast<char>('a' + std::lround(5 * picture.pixels[n]) - 1);
+    EXPECT_EQ(found, shown[static_cast<std::size_t>(orientation - 1)]) << orientation;
+    ImageSpec wide(2, 1, 3);
+    wide.attribute("Orientation", orientation);
+    const std::string row = write<std::uint8_t>("row.tif", wide, {51, 51, 51, 102, 102, 102});
+    EXPECT_EQ(read_picture(row, {}, PictureUse::map, nullptr).width, orientation > 4 ? 1 : 2) << orientation;
+    EXPECT_EQ(picture_size(row, {}, PictureUse::map).width, orientation > 4 ? 1 : 2) << orientation;
   }
 }
 

@@ -35,7 +35,7 @@ std::vector<Eigen::Vector2d> stored(const Surface& surface) {
 
 Surface with_normals(const Surface& surface, std::vector<Eigen::Vector2d> normals) {
   Surface other(surface.width(), surface.height(), surface.interpolation(), std::move(normals));
-  other.note_steps({kStep, false, true});
+  other.note_steps({kStep, false, false, kStep});
   return other;
 }
 

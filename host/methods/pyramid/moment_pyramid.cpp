@@ -182,12 +182,15 @@ class LevelEstimates {
         room_(room),
         size_(std::max(surface.width(), surface.height())) {}
 
-  /// Of a level and all coarser ones.
+  /// Of a level and all coarser ones; infinite as soon as those are too much, without a look at finer ones.
   double bytes(int finest, bool compact) {
-    double sum = elements(finest, compact);
-    int block = 2 * finest;
-    for (; block <= kSampledTexels && block < 2 * size_; block *= 2) sum += elements(block, compact);
-    if (block < 2 * size_) sum += elements(block / 2, compact) / 3;  // a quarter each, or few
+    int coarsest = finest;
+    while (2 * coarsest <= kSampledTexels && coarsest < size_) coarsest *= 2;
+    double sum = coarsest < size_ ? elements(coarsest, compact) / 3 : 0;  // a quarter each, or few
+    for (int block = coarsest; block >= finest; block /= 2) {
+      sum += elements(block, compact);
+      if (sum * element_bytes(compact) > room_) return std::numeric_limits<double>::infinity();
+    }
     return sum * element_bytes(compact);
   }
   /// Whether sixteen neighbouring elements of a group lie within eight cells or so of each other: 8 bits tell
@@ -202,6 +205,7 @@ class LevelEstimates {
     return (2.0 * record_stride(compact ? 8 : 16) + 2.0 * MICA_PYRAMID_NODE_STRIDE / 15) / 16;
   }
   double elements(int block, bool compact) {
+    block = std::min(block, size_);  // wider ones are the whole map, too
     const auto [found, added] = elements_.try_emplace(block);
     if (added) found->second = estimate_elements(surface_, cell_width_, block, room_ / element_bytes(true));
     return compact ? found->second.compact : found->second.whole;
@@ -214,6 +218,19 @@ class LevelEstimates {
 };
 
 }  // namespace
+
+bool hardly_merges(const Surface& surface, double cell_width) {
+  constexpr double hardly = 0.75;
+  const NormalCells cells(surface, cell_width);
+  std::vector<bool> is_met(static_cast<std::size_t>(cells.count()));
+  std::size_t met = 0;
+  for (const Eigen::Vector2d& normal : surface.normals()) {
+    std::vector<bool>::reference cell = is_met[cells.cell_of(normal.x(), normal.y())];
+    if (!cell) ++met;
+    cell = true;
+  }
+  return static_cast<double>(met) >= hardly * static_cast<double>(surface.normals().size());
+}
 
 PyramidLevels levels_that_fit(const Surface& surface, double cell_width, std::size_t bytes) {
   const auto room = static_cast<double>(bytes);

@@ -44,6 +44,10 @@ struct PyramidLevels {
       false;  ///< 8 bits a number in place of 16, and no light cells: a third to a half of the bytes
 };
 
+/// Whether the texels' normals lie so far apart that even on the whole map three quarters have a cell of
+/// their own: then levels have more elements than the map has texels.
+bool hardly_merges(const Surface& surface, double cell_width);
+
 /// The finest levels that take at most `bytes` together, by a sample of their blocks; compact where others
 /// would take more. The whole map's alone where none fit.
 PyramidLevels levels_that_fit(const Surface& surface, double cell_width, std::size_t bytes);

@@ -219,7 +219,11 @@ void PyramidEvaluator::add_levels(double roughness) {
   const int cell_class = cell_class_of(roughness);
   const double width = cell_width(cell_class, settings_.precision);
   if (width < kNarrowestCell || levels_of_class_.count(cell_class) != 0) return;
-  levels_of_class_[cell_class] = store_->levels(width);
+  if (unmerged_classes_.count(cell_class) != 0) return;
+  if (hardly_merges(surface_, width))
+    unmerged_classes_.insert(cell_class);
+  else
+    levels_of_class_[cell_class] = store_->levels(width);
 }
 
 std::optional<PyramidShares> PyramidEvaluator::shares(const Query& query) const {

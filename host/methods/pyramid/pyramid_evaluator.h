@@ -3,6 +3,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "host/device/device.h"
@@ -23,7 +24,7 @@ struct PyramidSettings {
 
 /// `pyramid`: merged elements, whose number does not grow with the footprint; kernels/pyramid/pyramid.cl.
 /// Levels are built when the first query needs them. Footprints that are too small for the finest level go to
-/// the texels themselves.
+/// the texels themselves, and so does a roughness whose levels would merge hardly any.
 class PyramidEvaluator : public Evaluator {
  public:
   /// Builds nothing yet. `device` and `surface` must outlive the evaluator.
@@ -88,6 +89,7 @@ class PyramidEvaluator : public Evaluator {
   std::shared_ptr<PyramidStore> store_;
   double build_seconds_ = 0;
   std::map<int, PyramidLevels> levels_of_class_;
+  std::set<int> unmerged_classes_;  ///< whose queries go to the texels; see hardly_merges
   std::map<PyramidChoice, Culling> cullings_;
   std::unique_ptr<Evaluator> texels_, counting_texels_;
 };

@@ -69,6 +69,18 @@ TEST(PatchEnergy, AMapOfOneNormalLosesNothingFromAbove) {
   }
 }
 
+/// There the one lobe that filtered masking takes for a patch is the patch's own.
+TEST(PatchEnergy, FilteredMaskingOfOneNormalIsExact) {
+  const Eigen::Vector2d normal(0.2, -0.15);
+  const Surface surface(16, 16, Interpolation::bilinear, std::vector<Eigen::Vector2d>(16 * 16, normal));
+  const auto exact = beckmanns(surface, Masking::exact), filtered = beckmanns(surface, Masking::filtered);
+  for (const double azimuth : {0.3, 1.9, 4.0}) {
+    const ViewQuery view{make_footprint(surface, {0.5, 0.5}, 2, 2, 0), direction(78, azimuth), 0.2};
+    const double expected = scattered(exact.get(), view);
+    EXPECT_NEAR(scattered(filtered.get(), view), expected, 5e-3 * expected) << azimuth;
+  }
+}
+
 /// Patches of 0.4 to 12 texels that lean anywhere, as seen up to 85 degrees from g.
 std::vector<ViewQuery> patches(const Surface& surface, int count) {
   std::vector<ViewQuery> views;

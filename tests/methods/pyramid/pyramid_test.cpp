@@ -9,6 +9,7 @@
 #include "host/base/error_norms.h"
 #include "host/base/random.h"
 #include "host/methods/pyramid/pyramid_evaluator.h"
+#include "host/methods/triangles/triangle_evaluator.h"
 #include "host/reference/oracle.h"
 #include "host/surface/texel_footprint.h"
 #include "tests/methods/bilinear_samples.h"
@@ -172,11 +173,17 @@ TEST(Pyramid, DropsOnlyWhatIsBelowTheCutoff) {
 }
 
 /// Normals change by many cells a texel here, so that wide elements share a record with narrow ones: of these
-/// the record's numbers must still leave a covariance.
+/// the record's numbers must still leave a covariance. Four periods, so that normals meet again and merge.
 TEST(Pyramid, AnswersSteepMaps) {
-  const Surface surface =
-      make_surface({"test", SpectrumSurface{32, 5, 2, 1}, Interpolation::bilinear}, nullptr);
-  PyramidEvaluator pyramid(device(), surface);
+  constexpr int period = 32, side = 2 * period;
+  const Surface steep =
+      make_surface({"test", SpectrumSurface{period, 5, 2, 1}, Interpolation::bilinear}, nullptr);
+  std::vector<Eigen::Vector2d> normals;
+  for (int n = 0; n < side * side; ++n) normals.push_back(steep.texel(n % side, n / side));
+  const Surface surface(side, side, Interpolation::bilinear, std::move(normals));
+  PyramidSettings settings;
+  settings.levels_bytes = std::size_t{128} << 20;
+  PyramidEvaluator pyramid(device(), surface, settings);
   const std::vector<Query> queries = random_queries(surface, 14, 14, 0.0029, 400);
   ASSERT_TRUE(pyramid.choose(queries.front()));
   for (const float density : pyramid.evaluate(queries)) ASSERT_TRUE(std::isfinite(density));
@@ -227,6 +234,21 @@ TEST(Pyramid, SendsSmallFootprintsAndRoughnessesToTheTexels) {
   ASSERT_TRUE(choice(40, 40, 0.02));
   EXPECT_LE(choice(40, 40, 0.02)->block, 64);
   EXPECT_TRUE(choice(1e5, 1e4, 0.02)->uniform);
+}
+
+/// Normals so far apart that cells hold a texel's each: levels would cost seconds and merge nothing.
+TEST(Pyramid, BuildsNothingWhereNothingMerges) {
+  const Surface steep =
+      make_surface({"test", SpectrumSurface{128, 2, 3, 1}, Interpolation::bilinear}, nullptr);
+  PyramidEvaluator pyramid(device(), steep);
+  TriangleEvaluator triangles(device(), steep);
+  for (const double sigma : {64.0, 5000.0}) {
+    const std::vector<Query> queries = random_queries(steep, sigma, sigma, 0.0022, 3);
+    EXPECT_FALSE(pyramid.choose(queries[0]));
+    EXPECT_EQ(pyramid.evaluate(queries), triangles.evaluate(queries));
+  }
+  EXPECT_EQ(pyramid.device_bytes(), triangles.device_bytes());
+  EXPECT_TRUE(pyramid.choose(random_queries(steep, 64, 64, 0.1, 1)[0]));
 }
 
 }  // namespace
