@@ -140,16 +140,33 @@ double doubt(const Samples& samples, int row, int column) {
   return std::sqrt(rows * rows + columns * columns + both * both);
 }
 
-/// Weights by which four samples along an axis, half as far apart, stand for one between the middle two of
-/// them: the outer ones and the inner ones. They keep its variance.
-struct Quarters {
-  double outer, inner;
+/// Weights by which six samples along an axis, half as far apart, stand for one between the middle two of
+/// them: of a Gaussian, and such that they keep its variance.
+class Denser {
+ public:
+  static constexpr int kCount = 6;
 
-  Quarters(double sigma, double fine_sigma, double fine_spacing) {
-    const double variance = (sigma * sigma - fine_sigma * fine_sigma) / (fine_spacing * fine_spacing);
-    outer = std::clamp((variance - 0.25) / 4, 0.0, 0.5), inner = 0.5 - outer;
+  Denser(double sigma, double fine_sigma, double fine_spacing) {
+    const double wanted = (sigma * sigma - fine_sigma * fine_sigma) / (fine_spacing * fine_spacing);
+    double width2 = wanted;
+    for (int step = 0; step < 8; ++step) width2 = std::max(width2 + wanted - set(width2), 0.1);
   }
-  double operator[](int n) const { return n == 0 || n == 3 ? outer : inner; }
+  double operator[](int n) const { return weights_[n]; }
+
+ private:
+  /// @return their variance.
+  double set(double width2) {
+    double sum = 0, variance = 0;
+    for (int n = 0; n < kCount; ++n) {
+      const double x = n - 0.5 * (kCount - 1);
+      weights_[n] = std::exp(-0.5 * x * x / width2);
+      sum += weights_[n], variance += weights_[n] * x * x;
+    }
+    for (double& weight : weights_) weight /= sum;
+    return variance / sum;
+  }
+
+  double weights_[kCount];
 };
 
 /// A pixel as a sum of samples, of which those that differ from their neighbours give way to denser ones.
@@ -169,8 +186,7 @@ class RefinedPixel {
   /// @param fine the lattice twice as dense. @return whether it had any.
   bool split(const Samples& samples, const Lattice& fine, double most) {
     const std::size_t across = samples.lattice.filter.weights.size();
-    const Quarters quarters(samples.lattice.filter.sigma_pixels, fine.filter.sigma_pixels,
-                            1.0 / fine.subpixels);
+    const Denser along(samples.lattice.filter.sigma_pixels, fine.filter.sigma_pixels, 1.0 / fine.subpixels);
     const int last = 2 * static_cast<int>(across) - 1;
     std::vector<double> denser(4 * across * across, 0.0);
     bool any = false;
@@ -183,11 +199,11 @@ class RefinedPixel {
           continue;
         }
         any = true;
-        for (int y = 0; y < 4; ++y)
-          for (int x = 0; x < 4; ++x) {
-            const int down = std::clamp(2 * static_cast<int>(j) + y - 1, 0, last),
-                      right = std::clamp(2 * static_cast<int>(i) + x - 1, 0, last);
-            denser[static_cast<std::size_t>(down * (last + 1) + right)] += weight * quarters[y] * quarters[x];
+        for (int y = 0; y < Denser::kCount; ++y)
+          for (int x = 0; x < Denser::kCount; ++x) {
+            const int down = std::clamp(2 * static_cast<int>(j) + y - 2, 0, last),
+                      right = std::clamp(2 * static_cast<int>(i) + x - 2, 0, last);
+            denser[static_cast<std::size_t>(down * (last + 1) + right)] += weight * along[y] * along[x];
           }
       }
     weights_ = std::move(denser);
