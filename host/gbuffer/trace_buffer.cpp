@@ -146,7 +146,7 @@ void BufferBlock::probe(int row, int column) {
   gradients_.at(row, column) = surface_gradient(buffer_.pixels, row, column);
   SeenPoint point = point_at(row, column);
   see_lamps(&point);
-  probes_.at(row, column) = probe_of(viewer_, point);
+  probes_.at(row, column) = probe_of(point);
 }
 
 SeenPoint BufferBlock::point_at(int row, int column) const {

@@ -231,10 +231,10 @@ PixelSettings BuiltJob::pixels() const {
   pixels.turns = may_fit;
   for (std::size_t n = 0; n < job_.scene.materials.size(); ++n) {
     const int evaluator = plan_.evaluator_of_material[n];
-    const std::optional<GlintsDescription>& glints = job_.scene.materials[n].glints;
-    const bool takes = evaluator >= 0 && plan_.evaluators[evaluator].asks_densities &&
-                       method_of(job_, plan_.evaluators[evaluator]).traits().first_order &&
-                       (!glints || (sees_scene() && glints->mapping == GlintsDescription::Mapping::uv));
+    // Glints without a map take it too, but where half vectors turn by several lobes they lose their
+    // contrast.
+    const bool takes = evaluator >= 0 && surfaces_[evaluator] && plan_.evaluators[evaluator].asks_densities &&
+                       method_of(job_, plan_.evaluators[evaluator]).traits().first_order;
     pixels.takes_first_order.push_back(takes);
     pixels.fits = pixels.fits || (may_fit && takes);
   }

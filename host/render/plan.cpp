@@ -58,7 +58,8 @@ void plan_structure(const Job& job, PlannedEvaluator* planned) {
   planned->device_bytes = size.device_bytes;
   planned->host_bytes += size.host_bytes;
   planned->kernel = size.kernel;
-  if (planned->asks_densities && may_ask_first_order(job) && method_of(job, *planned).traits().first_order)
+  if (planned->surface_index >= 0 && planned->asks_densities && may_ask_first_order(job) &&
+      method_of(job, *planned).traits().first_order)
     planned->kernel += fmt::format(", {} -DMICA_FIRST_ORDER=1", size.kernel);
 }
 

@@ -25,6 +25,10 @@ double factor(const std::optional<Texture>& texture, const Eigen::Vector2d& uv) 
   return texture ? std::clamp(texture->at(uv).x(), 0.0, 1.0) : 1;
 }
 
+Eigen::Vector2d wrapped(const Eigen::Vector2d& uv) {
+  return uv - kPeriod * (uv / kPeriod).array().floor().matrix();
+}
+
 /// Density in steps of four, each a grid of its own, of which the texture leaves a share: cells that followed
 /// it smoothly would be torn apart far from the origin.
 void set_density(double density, double factor, GlintPoint* point) {
@@ -35,10 +39,6 @@ void set_density(double density, double factor, GlintPoint* point) {
 }
 
 }  // namespace
-
-Eigen::Vector2d wrap_glints(const Eigen::Vector2d& uv) {
-  return uv - kPeriod * (uv / kPeriod).array().floor().matrix();
-}
 
 GlintMaterial::GlintMaterial(const MaterialDescription& material)
     : material_(material),
@@ -86,7 +86,7 @@ std::vector<GlintPlace> GlintMaterial::places(const CameraRay& ray, const Hit& h
     return places;
   }
   place.x = frame.x, place.y = frame.y;
-  place.footprint.mean_uv = wrap_glints(hit.uv.cwiseProduct(material_.repeat));
+  place.footprint.mean_uv = wrapped(hit.uv.cwiseProduct(material_.repeat));
   const Eigen::Matrix2d duv = material_.repeat.asDiagonal() * uv_differentials(ray, hit);
   place.footprint.cov_uv = footprint_covariance(duv, sigma_pixels);
   places.push_back(place);
@@ -123,7 +123,7 @@ void GlintMaterial::split_by_plane(const CameraRay& ray, const Hit& hit, const T
     place.x = (Eigen::Vector3d::Unit(across) - frame.z[across] * frame.z).normalized();
     place.y = frame.z.cross(place.x);
     const Eigen::Vector2d position(hit.position[across], hit.position[up]);
-    place.footprint.mean_uv = wrap_glints(position.cwiseProduct(material_.repeat));
+    place.footprint.mean_uv = wrapped(position.cwiseProduct(material_.repeat));
     Eigen::Matrix2d duv;
     duv << differentials.row(across) * material_.repeat.x(), differentials.row(up) * material_.repeat.y();
     place.footprint.cov_uv = footprint_covariance(duv, sigma_pixels);

@@ -14,9 +14,6 @@
 
 namespace mica::host {
 
-/// Coordinates far out start again: further on, cells would be lost to rounding.
-Eigen::Vector2d wrap_glints(const Eigen::Vector2d& uv);
-
 /// A process of glints as one footprint sees it: where, and in which axes.
 struct GlintPlace {
   Footprint footprint;
@@ -54,9 +51,6 @@ class GlintMaterial {
   double microroughness(const Eigen::Vector2d& uv) const;
   /// What a query asks with in its place: the light's extent widens it.
   double widened(double microroughness, const LobesSeen& seen) const;
-
-  /// Whether each pixel's processes lie in uv, one footprint for all.
-  bool has_one_place() const { return glints_.mapping == GlintsDescription::Mapping::uv; }
 
  private:
   Eigen::Vector2d alpha_at(const Eigen::Vector2d& uv) const;

@@ -24,7 +24,7 @@ double narrowest(const Eigen::Matrix2d& lobe_cov) {
 
 }  // namespace
 
-Probe probe_of(const Viewer& viewer, const SeenPoint& point) {
+Probe probe_of(const SeenPoint& point) {
   Probe probe;
   probe.radiance = point.radiance;
   if (!point.hit) return probe;
@@ -41,10 +41,6 @@ Probe probe_of(const Viewer& viewer, const SeenPoint& point) {
                            lamp.lobe_cov, lit(lamp.seen.glint_weight), lit(lamp.seen.smooth),
                            lamp.weight_unshadowed, lamp.missed});
   }
-  if (const std::optional<GlintMaterial>& glints = viewer.shared->glints[point.material];
-      glints && glints->has_one_place())
-    for (const GlintPlace& place : glints->places(point.ray, *point.hit, point.frame, 0.5))
-      probe.glints.push_back(place.point);
   return probe;
 }
 
@@ -104,7 +100,7 @@ UvSteps repeating_steps(const FitStencil& stencil, const ProbesOfFit& probes) {
   for (std::size_t n = 0; n < stencil.size(); ++n) {
     const Eigen::Vector2d expected = middle.duv * stencil.offsets()[n];
     steps[n] = probes[n]->uv - middle.uv;
-    if (middle.glints.empty()) steps[n] -= (steps[n] - expected).array().round().matrix();
+    steps[n] -= (steps[n] - expected).array().round().matrix();
   }
   return steps;
 }
@@ -244,9 +240,7 @@ bool PixelFit::query_of(const Gaussian& part, const Frame& frame, const LampFit&
   const Eigen::Matrix2d none = Eigen::Matrix2d::Zero();
   const Eigen::Vector2d moved = frame.axes * shift;
   const Eigen::Vector2d uv = Eigen::Vector2d(u_.mean(mean, none), v_.mean(mean, none)) + moved;
-  const bool repeats = probes_[0]->glints.empty();
-  asked.footprint = {repeats ? wrap(probes_[0]->uv + uv) : wrap_glints(probes_[0]->uv + uv),
-                     footprint_covariance(frame.axes, 1)};
+  asked.footprint = {wrap(probes_[0]->uv + uv), footprint_covariance(frame.axes, 1)};
   // Of the second order of h(u) half its mean: glints see the square of the Gaussian.
   const auto half_vector = [&](const Quadratic& h, int row) {
     return h.mean(mean, none) + frame.turn.row(row).dot(moved) + 0.25 * frame.bend.of_h[row].trace();
@@ -257,7 +251,7 @@ bool PixelFit::query_of(const Gaussian& part, const Frame& frame, const LampFit&
   asked.half_vector_turn.setZero(), asked.lobe_cov = lamp.lobe_cov;
   const Eigen::Matrix2d across = frame.turn * frame.axes, spread = across * across.transpose();
   if (spread.trace() > kLeastTurn * kLeastTurn * narrowest(lamp.lobe())) {
-    if (repeats && asked.footprint.cov_uv.trace() > kWholePeriod * kWholePeriod) {
+    if (asked.footprint.cov_uv.trace() > kWholePeriod * kWholePeriod) {
       Eigen::Matrix2d lobe = lamp.lobe() + spread;
       lobe(1, 0) = lobe(0, 1);
       asked.lobe_cov = lobe;
@@ -316,15 +310,7 @@ bool PixelFit::ask(std::size_t lamp, const FilterSum& filter, const FitLimits& l
       parts.push_back(
           {part.mean + split.parts.offsets_pixels[n] * axis, cov, part.weight * split.parts.weights[n]});
   }
-  if (probes_[0]->glints.empty()) {
-    queries->insert(queries->end(), asked.begin(), asked.end());
-  } else {
-    for (GlintQuery& query : asked)
-      for (const GlintPoint& process : probes_[0]->glints) {
-        query.glints = process;
-        queries->push_back(query);
-      }
-  }
+  queries->insert(queries->end(), asked.begin(), asked.end());
   return true;
 }
 

@@ -42,9 +42,8 @@ struct Probe {
   Eigen::Vector3d normal{0, 0, 0};
   Color radiance = Color::Zero();  ///< of what needs no P-NDF, of all lamps
   std::vector<Lamp> lamps;
-  std::vector<GlintPoint> glints;  ///< its processes, of materials without a map: their uv do not repeat
 };
-Probe probe_of(const Viewer& viewer, const SeenPoint& point);
+Probe probe_of(const SeenPoint& point);
 
 /// c + g x + x' q x / 2 about a pixel's centre.
 struct Quadratic {
@@ -98,8 +97,8 @@ struct FitLimits {
 using ProbesOfFit = std::array<const Probe*, FitStencil::kMost>;
 using UvSteps = std::array<Eigen::Vector2d, FitStencil::kMost>;
 
-/// The change of uv from the centre to each place. Maps repeat: of all that a place may mean the one nearest
-/// to where the centre's uv lead.
+/// The change of uv from the centre to each place. The map repeats: of all that a place may mean the one
+/// nearest to where the centre's uv lead.
 UvSteps repeating_steps(const FitStencil& stencil, const ProbesOfFit& probes);
 
 /// A pixel whose filter lies on one surface, by a least-squares fit of second order to what its stencil

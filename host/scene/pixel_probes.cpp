@@ -63,8 +63,7 @@ Probe PixelProbes::trace(int down, int right, int shadow_rays_side) const {
   const auto random = [&](std::uint64_t n) {
     return random_unit(key, kProbes, 2 * n + static_cast<std::uint64_t>(down & 1));
   };
-  return probe_of(viewer_,
-                  viewer_.look(pixels_.origin_column + 0.5 * right, pixels_.origin_row + 0.5 * down,
+  return probe_of(viewer_.look(pixels_.origin_column + 0.5 * right, pixels_.origin_row + 0.5 * down,
                                {light_samples({random(0), random(1)}, shadow_rays_side), lamp_parts_}));
 }
 

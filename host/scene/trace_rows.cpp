@@ -24,10 +24,6 @@ constexpr double kMostPenumbraResidual = 0.12;
 /// the others. Where there are more of them all of the pixel is sampled, and refined where it is in doubt.
 constexpr double kMostSampledLamps = 0.25;
 
-/// Relative L2 of single glints that a fit may leave out where they are random: smaller footprints would see
-/// others, and what is expected of them changes far less.
-constexpr double kMostOfRandomGlints = 0.1;
-
 /// What a fitted pixel shows; unset: it needs samples.
 struct FittedPixel {
   Color radiance = Color::Zero();
@@ -197,9 +193,7 @@ std::optional<FittedPixel> BlockTracer::fit(int row, int column) const {
   }
   pixel.footprint = fitted.footprint(few_);
   pixel.normal = middle.normal;
-  const double tolerance =
-      middle.glints.empty() ? pixels_.tolerance : std::max(pixels_.tolerance, kMostOfRandomGlints);
-  const FitLimits limits{tolerance, std::max(1, pixels_.subpixels * pixels_.subpixels)};
+  const FitLimits limits{pixels_.tolerance, std::max(1, pixels_.subpixels * pixels_.subpixels)};
   const std::vector<bool> edges = probes_->edges(row, column);
   const auto asks = [&](std::size_t part) {
     return !edges[part] && (!fitted.sees(part) || (fitted.penumbra_residual(part) <= kMostPenumbraResidual &&
