@@ -203,7 +203,9 @@ class RefinedPixel {
           for (int x = 0; x < Denser::kCount; ++x) {
             const int down = std::clamp(2 * static_cast<int>(j) + y - 2, 0, last),
                       right = std::clamp(2 * static_cast<int>(i) + x - 2, 0, last);
-            denser[static_cast<std::size_t>(down * (last + 1) + right)] += weight * along[y] * along[x];
+            const std::size_t place =
+                static_cast<std::size_t>(down) * 2 * across + static_cast<std::size_t>(right);
+            denser[place] += weight * along[y] * along[x];
           }
       }
     weights_ = std::move(denser);
