@@ -62,8 +62,8 @@ struct MaterialDescription {
   Eigen::Vector2d repeat{1, 1};                              ///< map periods over the shape's uv
   std::string ndf = "triangles";                             ///< name of the method
   std::shared_ptr<const MethodSettings> settings = nullptr;  ///< the method's own
-  double roughness = 0.01;                                   ///< sigma_r on the disk; of a long one the root mean square
-  std::optional<Eigen::Vector2d> long_roughness = {};        ///< along u and v, where these differ
+  double roughness = 0.01;  ///< sigma_r on the disk; of a long one the root mean square
+  std::optional<Eigen::Vector2d> long_roughness = {};  ///< along u and v, where these differ
   Fresnel specular = ColorFresnel{};
   Color diffuse{0, 0, 0};  ///< Lambertian albedo
   MultipleScattering multiple_scattering = MultipleScattering::lost;

@@ -10,6 +10,7 @@
 #include "host/scene/footprint.h"
 #include "host/scene/light_samples.h"
 #include "host/scene/pixel_probes.h"
+#include "host/scene/sample_turns.h"
 #include "host/scene/wrap.h"
 
 namespace mica::host {
@@ -342,42 +343,6 @@ void BlockTracer::own_lamps(int row, int column, std::size_t first_glint, RowQue
     query.pixel = static_cast<std::uint32_t>(pixel);
     if (rows_.query_count[pixel] < 65535) ++rows_.query_count[pixel];
   }
-}
-
-/// A lamp's half vector's change a pixel to the right and down, at point k of a pixel of n x n: by
-/// differences to its neighbours in the pixel that lie on the same surface in the lamp's light. None where it
-/// has none along one of both axes, and towards rims, where nothing is linear over `sigma_pixels` any more.
-std::optional<Eigen::Matrix2d> half_vector_change(const std::vector<SeenPoint>& points, int n, int k,
-                                                  std::size_t lamp, double sigma_pixels) {
-  const SeenPoint& middle = points[static_cast<std::size_t>(k)];
-  const auto is_alike = [&](const SeenPoint& point) {
-    return point.hit && point.faces_eye && point.hit->shape == middle.hit->shape &&
-           point.hit->part == middle.hit->part && alike(point.lamps, middle.lamps) &&
-           point.lamps[lamp].visible > 0;
-  };
-  const int place[2] = {k % n, k / n}, stride[2] = {1, n};
-  Eigen::Matrix2d change;
-  for (int axis = 0; axis < 2; ++axis) {
-    int ends[2] = {0, 0};  // steps to the neighbours
-    for (const int step : {-1, 1}) {
-      const int to = place[axis] + step, index = k + step * stride[axis];
-      if (to >= 0 && to < n && is_alike(points[static_cast<std::size_t>(index)])) ends[step > 0] = step;
-    }
-    if (ends[0] == ends[1]) return std::nullopt;
-    const auto half_vector = [&](int step) -> const Eigen::Vector2d& {
-      const int index = k + step * stride[axis];
-      return points[static_cast<std::size_t>(index)].lamps[lamp].half_vector;
-    };
-    const auto cosine = [&](int step) {
-      const int index = k + step * stride[axis];
-      const SeenPoint& point = points[static_cast<std::size_t>(index)];
-      return point.frame.z.dot(point.to_eye);
-    };
-    const double foreshortened = std::abs(cosine(ends[1]) - cosine(ends[0])) * n / (ends[1] - ends[0]);
-    if (!(sigma_pixels * foreshortened < kMostForeshortening * cosine(0))) return std::nullopt;
-    change.col(axis) = (half_vector(ends[1]) - half_vector(ends[0])) * n / (ends[1] - ends[0]);
-  }
-  return change;
 }
 
 /// The half vectors' turns over the samples of a pixel, by sample and lamp.
