@@ -47,18 +47,23 @@ std::vector<double> items_of_blocks(const std::vector<ItemsOfRows>& sampled, int
   return blocks;
 }
 
-/// Bytes an item that evaluating takes on the device beside what is there before: the lesser of two tries,
-/// since drivers may free what is done with a moment too late. They compile on first use, too.
+/// Bytes an item that evaluating takes on the device beside what is there before. They compile on first use,
+/// too. Drivers may free what is done with a moment too late, from before the first try or between two: the
+/// least that lies there at any time is what stays, and the least peak, where two are alike, is what
+/// evaluating takes.
 template <typename Evaluate>
 double batch_bytes(Device& device, std::size_t items, const Evaluate& evaluate) {
-  std::size_t least = std::numeric_limits<std::size_t>::max();
-  for (int attempt = 0; attempt < 2; ++attempt) {
-    const std::size_t before = device.bytes();
+  constexpr int most_tries = 4;
+  std::size_t there = device.bytes(), peak = std::numeric_limits<std::size_t>::max();
+  bool alike = false;
+  for (int attempt = 0; attempt < most_tries && !alike; ++attempt) {
     device.forget_peak();
     evaluate();
-    least = std::min(least, device.peak_bytes() - before);
+    alike = device.peak_bytes() == peak;
+    peak = std::min(peak, device.peak_bytes());
+    there = std::min(there, device.bytes());
   }
-  return static_cast<double>(least) / static_cast<double>(std::max<std::size_t>(items, 1));
+  return static_cast<double>(peak - there) / static_cast<double>(std::max<std::size_t>(items, 1));
 }
 
 /// What gathering light in some rows takes.
