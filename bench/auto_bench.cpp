@@ -1,9 +1,11 @@
 // Fits the cost model of `auto`: what queries of random footprints cost each evaluator, in nanoseconds of a
-// core, against what is counted of them. Prints the rows and, for host/methods/auto/cost_model.cpp, the fits.
-//   auto_costs [SURFACE... | FILE...]
+// core, against what is counted of them: as they are, and turning by a lobe over their footprint. Prints the
+// rows and, for host/methods/auto/cost_model.cpp, the fits.
+//   auto_bench [SURFACE... | FILE...]
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <Eigen/QR>
 #include <algorithm>
 #include <array>
@@ -25,6 +27,7 @@ namespace mica::host::bench {
 namespace {
 
 constexpr int kRepeats = 11;
+constexpr double kTolerance = 0.01;  // of triangles
 
 /// Nanoseconds of one core that a query takes.
 double core_nanoseconds(Evaluator* evaluator, const std::vector<Query>& queries) {
@@ -40,6 +43,17 @@ double core_nanoseconds(Evaluator* evaluator, const std::vector<Query>& queries)
 
 double mean(const std::vector<float>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+/// The same queries, whose half vectors turn by a lobe over their footprints, each along its own axis.
+std::vector<Query> turning(std::vector<Query> queries) {
+  for (std::size_t n = 0; n < queries.size(); ++n) {
+    const double lobes_a_footprint =
+        queries[n].roughness / std::sqrt(queries[n].footprint.cov_uv.trace() / 2);
+    queries[n].half_vector_turn =
+        lobes_a_footprint * Eigen::Rotation2Dd(static_cast<double>(n)).toRotationMatrix();
+  }
+  return queries;
 }
 
 /// What a row of queries took an evaluator, and what its cost model goes by.
@@ -80,24 +94,29 @@ void print_fit(const std::string& evaluator, const std::vector<CostRow>& rows) {
     worst = std::max(worst, std::exp(std::abs(ratio)));
     squares += ratio * ratio;
   }
-  fmt::print("{:<20} {{{:.4g}, {:.3g}, {:.3g}}}, off by a factor of {:.2f} (RMS), {:.2f} at most\n",
+  fmt::print("{:<34} {{{:.4g}, {:.3g}, {:.3g}}}, off by a factor of {:.2f} (RMS), {:.2f} at most\n",
              evaluator, model.query, model.block, model.count, std::exp(std::sqrt(squares / rows.size())),
              worst);
 }
 
-/// Adds what queries of the footprints cost and what is counted of them.
+/// Adds what queries of the footprints cost and what is counted of them, to the rows of a name and, of those
+/// that turn, to its others.
 void measure(const BenchMap& map, const std::vector<double>& sigmas, Evaluator* timed, const Count& counts,
-             std::vector<CostRow>* rows) {
+             const std::string& name, CostRows* rows) {
   for (const double sigma : sigmas) {
     const std::size_t count = sigma > 8 ? 1 << 10 : 1 << 12;
-    const std::vector<Query> queries = random_queries(map.surface, sigma, map.roughness, count);
-    CostRow row{core_nanoseconds(timed, queries), 0, mean(counts(queries))};
-    if (timed->name() != "pyramid")
-      row.blocks = blocks_reached(queries.front(), map.surface.width(), map.surface.height());
-    fmt::print("{:<10} {:>5} {:>4}  {:<12} {:>10.0f} ns {:>10.0f} counts\n", map.name, map.roughness, sigma,
-               timed->name(), row.nanoseconds, row.counts);
-    std::fflush(stdout);
-    rows->push_back(row);
+    const std::vector<Query> still = random_queries(map.surface, sigma, map.roughness, count);
+    for (const bool turns : {false, true}) {
+      const std::vector<Query> queries = turns ? turning(still) : still;
+      CostRow row{core_nanoseconds(timed, queries), 0, mean(counts(queries))};
+      if (timed->name() != "pyramid")
+        row.blocks = blocks_reached(queries.front(), map.surface.width(), map.surface.height());
+      const std::string of = name + (turns ? ", first order" : "");
+      fmt::print("{:<10} {:>5} {:>4}  {:<34} {:>10.0f} ns {:>10.0f} counts\n", map.name, map.roughness, sigma,
+                 of, row.nanoseconds, row.counts);
+      std::fflush(stdout);
+      (*rows)[of].push_back(row);
+    }
   }
 }
 
@@ -106,13 +125,14 @@ void measure_all(Device& device, const BenchMap& map, CostRows* rows) {
   const std::vector<double> small = {1, 2, 4, 8, 16, 32}, large = {32, 128, 512};
   {
     TriangleSettings settings;
+    settings.tolerance = kTolerance;
     TriangleEvaluator timed(device, map.surface, settings);
     settings.count_flops = true;
     TriangleEvaluator counting(device, map.surface, settings);
     const bool nearest = map.surface.interpolation() == Interpolation::nearest;
     measure(
         map, small, &timed, [&](const auto& queries) { return counting.evaluate(queries); },
-        &(*rows)[nearest ? "triangles, nearest" : "triangles, bilinear"]);
+        nearest ? "triangles, nearest" : "triangles, bilinear", rows);
   }
   MixtureSettings counted;
   counted.elements = kCountedMixture;
@@ -124,13 +144,13 @@ void measure_all(Device& device, const BenchMap& map, CostRows* rows) {
     GaussianEvaluator timed(device, map.surface, settings);
     measure(
         map, small, &timed, [&](const auto& queries) { return counting.evaluate(queries); },
-        &(*rows)[fmt::format("gaussians, {}", elements)]);
+        fmt::format("gaussians, {}", elements), rows);
   }
   PyramidEvaluator pyramid(device, map.surface);
   if (map.roughness >= 0.02)  // others cost alike, and their levels take long to build
     measure(
-        map, large, &pyramid, [&](const auto& queries) { return pyramid.count_elements(queries); },
-        &(*rows)["pyramid"]);
+        map, large, &pyramid, [&](const auto& queries) { return pyramid.count_elements(queries); }, "pyramid",
+        rows);
 }
 
 void fit_costs(Device& device, const std::vector<std::string>& names) {
@@ -153,7 +173,7 @@ int main(int argc, char** argv) {
     mica::host::bench::fit_costs(device, names);
     return 0;
   } catch (const mica::Error& error) {
-    fmt::print(stderr, "auto_costs: {}\n", error.what());
+    fmt::print(stderr, "auto_bench: {}\n", error.what());
     return 1;
   }
 }

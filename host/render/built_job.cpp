@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "host/base/stopwatch.h"
 #include "host/job/input_files.h"
@@ -20,8 +21,6 @@ namespace {
 constexpr double kUnusedAlpha = 0.1;  // of materials that no shape has
 constexpr double kPixelOfPicture =
     2;  // most pixels leave out far less than the worst, and all count in the mean square
-constexpr double kGoldenRatio =
-    0.6180339887498949;  // whose multiples, less whole numbers, fill [0, 1) evenly
 
 /// The normals of a map as a whole, and of its roughness.
 SmoothLobe lobe_of(const Surface& surface, const Eigen::Vector2d& roughness_uv) {
@@ -58,11 +57,18 @@ BuiltJob::BuiltJob(const Job& job, const Plan& plan, Device& device, int frame, 
       choices_(plan.evaluators.size()),
       surfaces_(make_surfaces()),
       scene_(make_scene()) {
-  const Stopwatch watch;
   evaluators_.resize(surfaces_.size());
   brdfs_.resize(surfaces_.size());
   lit_normals_.resize(surfaces_.size());
-  for (std::size_t n = 0; n < surfaces_.size(); ++n) build_evaluator(n);
+  std::vector<std::size_t> all(surfaces_.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  build_evaluators(all);
+}
+
+void BuiltJob::build_evaluators(const std::vector<std::size_t>& changed) {
+  const Stopwatch watch;
+  for (const std::size_t n : changed) build_evaluator(n);
+  of_all_frames_.reset(), of_frame_.reset();
   build_seconds_ = watch.seconds();
 }
 
@@ -85,7 +91,8 @@ std::unique_ptr<PatchBrdf> BuiltJob::make_brdf(std::size_t n) const {
   const Method& method = method_of(job_, planned);
   const MethodTraits traits = method.traits();
   if (traits.brdf) return method.make_brdf(&device_, surface(n), settings_of(job_, planned));
-  const auto draws = traits.surface_normals ? NdfBrdf::Draws::surface_normals : NdfBrdf::Draws::smooth_lobe;
+  const auto draws = traits.surface_normals || traits.chooses ? NdfBrdf::Draws::surface_normals
+                                                              : NdfBrdf::Draws::smooth_lobe;
   return std::make_unique<NdfBrdf>(*evaluators_[n], *surfaces_[n], draws);
 }
 
@@ -101,26 +108,18 @@ std::unique_ptr<Evaluator> BuiltJob::make_density_evaluator(std::size_t n) {
 /// frames, so that a frame is the same whichever others are rendered; of this frame where the surface is
 /// another in each.
 void BuiltJob::calibrate(std::size_t n, Evaluator* evaluator) {
-  constexpr int most_rows = 24;
   const bool for_one_frame = moves(job_.surfaces[plan_.evaluators[n].surface_index]);
-  const int height = job_.image.height, first = for_one_frame ? frame_ : job_.frames.first,
-            frames = for_one_frame ? 1 : job_.frames.last - job_.frames.first + 1,
-            views = std::min(frames, most_rows), rows = std::min(height, (most_rows + views - 1) / views);
-  std::vector<Query> queries;
-  for (int view = 0; view < views; ++view) {
-    const auto frame = first + static_cast<int>((2LL * view + 1) * frames / (2 * views));
-    const Scene scene = scene_at(frame);
-    const double shift = std::fmod(0.5 + kGoldenRatio * view, 1.0);  // other rows in every view
-    for (int row = 0; row < rows; ++row)
-      for (const GlintQuery& glint :
-           trace_(scene, static_cast<int>((row + shift) * height / rows), 1).queries)
-        if (plan_.evaluator_of_material[glint.material] == static_cast<int>(n))
-          queries.push_back(glint.query);
-  }
-  double scale = static_cast<double>(height) * frames / (static_cast<double>(rows) * views);
-  if (plan_.gathers_light) scale *= 1 + job_.image.samples;
+  const FrameRange frames = for_one_frame
+                                ? FrameRange{frame_, 1}
+                                : FrameRange{job_.frames.first, job_.frames.last - job_.frames.first + 1};
+  std::optional<SomeQueries>& some = for_one_frame ? of_frame_ : of_all_frames_;
+  if (!some)
+    some = queries_of_some_rows(
+        plan_, job_.image.height, frames, [&](int frame) { return scene_at(frame); }, trace_);
+  const std::vector<Query>& queries = some->of_evaluator[n];
+  const double directions = plan_.gathers_light ? 1 + job_.image.samples : 1;
   evaluator->calibrate(
-      queries.size(), [&](std::size_t k) { return queries[k]; }, scale);
+      queries.size(), [&](std::size_t k) { return queries[k]; }, directions * some->scale);
   choices_[n].clear();
   for (const AutoChoice& choice : evaluator->choices())
     choices_[n].push_back(fmt::format("surface {}: {}: {}; tolerance {}", plan_.evaluators[n].surface,
@@ -161,9 +160,7 @@ void BuiltJob::go_to(int frame) {
   const Stopwatch moving;
   scene_ = scene_at(frame);
   scene_seconds_ = moving.seconds();
-  const Stopwatch building;
-  for (const std::size_t n : changed) build_evaluator(n);
-  build_seconds_ = building.seconds();
+  build_evaluators(changed);
 }
 
 double BuiltJob::least_roughness(std::size_t n) const {

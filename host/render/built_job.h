@@ -11,15 +11,13 @@
 #include "host/job/job.h"
 #include "host/methods/evaluator.h"
 #include "host/methods/patch_brdf.h"
+#include "host/render/calibration_rows.h"
 #include "host/render/lit_normals.h"
 #include "host/render/plan.h"
 #include "host/scene/scene.h"
 #include "host/surface/surface.h"
 
 namespace mica::host {
-
-/// Rows of a picture; by default those that the scene's camera sees, `scene.trace(first_row, row_count)`.
-using TraceRows = std::function<TracedRows(const Scene& scene, int first_row, int row_count)>;
 
 /// Everything that a plan names, built: surfaces, scene, and evaluators on the device; at one frame.
 class BuiltJob {
@@ -68,6 +66,7 @@ class BuiltJob {
  private:
   Surface make_surface_of(std::size_t n, int frame);
   double least_roughness(std::size_t n) const;  ///< of its materials
+  void build_evaluators(const std::vector<std::size_t>& changed);
   void build_evaluator(std::size_t n);
   Scene scene_at(int frame) const;
   std::vector<std::optional<Surface>> make_surfaces();
@@ -85,6 +84,8 @@ class BuiltJob {
   const Job& job_;
   const Plan& plan_;
   Device& device_;
+  /// Of all frames, and of the present one; for methods that choose, while evaluators are built.
+  std::optional<SomeQueries> of_all_frames_, of_frame_;
   bool traces_otherwise_;
   TraceRows trace_;
   int frame_;

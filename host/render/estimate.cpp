@@ -7,6 +7,7 @@
 #include "host/base/stopwatch.h"
 #include "host/render/built_job.h"
 #include "host/render/gather_light.h"
+#include "host/render/own_samples.h"
 
 namespace mica::host {
 namespace {
@@ -118,30 +119,14 @@ struct SampledRows {
   double rows_traced = 0, seconds = 0;  ///< with those in margins
 };
 
-/// Samples of a block from the first of its own rows to the one after the last; kNone are pixels' own.
-class OwnSamples {
- public:
-  explicit OwnSamples(const TracedRows& rows) {
-    const Lattice& lattice = rows.lattice;
-    const auto first_of = [&](int row) {
-      for (std::size_t cell = lattice.cell(row, -lattice.margin); cell < lattice.first_sample.size(); ++cell)
-        if (lattice.first_sample[cell] != Lattice::kNone) return lattice.first_sample[cell];
-      return Lattice::kNone;
-    };
-    first_ = first_of(0), end_ = first_of(rows.row_count);
-  }
-
-  template <typename Item>
-  ItemsOfRows count(const std::vector<Item>& items, int rows) const {
-    const auto own = std::count_if(items.begin(), items.end(), [&](const Item& item) {
-      return item.sample == Lattice::kNone || (item.sample >= first_ && item.sample < end_);
-    });
-    return {static_cast<double>(own) / rows, static_cast<double>(items.size()) - static_cast<double>(own)};
-  }
-
- private:
-  std::uint32_t first_ = 0, end_ = 0;
-};
+/// How many items lie in a row of a block, and in its margins.
+template <typename Item>
+ItemsOfRows items_of(const std::vector<Item>& items, const OwnSamples& own, int rows) {
+  const auto inside =
+      std::count_if(items.begin(), items.end(), [&](const Item& item) { return own.has(item.sample); });
+  return {static_cast<double>(inside) / rows,
+          static_cast<double>(items.size()) - static_cast<double>(inside)};
+}
 
 SampledRows trace_samples(const Scene& scene, const Job& job) {
   SampledRows sampled;
@@ -153,8 +138,8 @@ SampledRows trace_samples(const Scene& scene, const Job& job) {
     const TracedRows& rows = sampled.rows.emplace_back(
         scene.trace(std::clamp(middle - together / 2, 0, height - together), together));
     const OwnSamples own(rows);
-    sampled.queries.push_back(own.count(rows.queries, together));
-    const ItemsOfRows points = own.count(rows.points, together), lit = own.count(rows.lit, together);
+    sampled.queries.push_back(items_of(rows.queries, own, together));
+    const ItemsOfRows points = items_of(rows.points, own, together), lit = items_of(rows.lit, own, together);
     sampled.points.push_back({points.a_row + lit.a_row, points.in_margins + lit.in_margins});
     sampled.all_queries += rows.queries.size();
     sampled.rows_traced += together + 2 * margin;

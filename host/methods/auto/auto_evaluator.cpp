@@ -38,7 +38,7 @@ constexpr double kCountingSeconds = 0.1;
 /// Share of what a class's queries cost by triangles that looking at them may take, and of all classes' that
 /// structures may which are then not used.
 constexpr double kLookingShare = 0.1;
-constexpr double kExactCost = 3;  ///< of exact triangles, in those of a tolerance; or less
+constexpr double kExactCost = 5;  // of exact triangles, in those of a tolerance; or less
 
 /// Evaluates up to the first `end` of the queries, from where `densities` end.
 void extend(Evaluator* evaluator, const std::vector<Query>& queries, std::size_t end,
@@ -239,7 +239,7 @@ AutoEvaluator::Verdict AutoEvaluator::judge(Candidate* candidate, Samples* sampl
   const bool is_pyramid = candidate->kind == CandidateKind::pyramid;
   if (is_pyramid && candidate->precision.block_ratio * std::exp2(samples->kind.size + 0.5) < kFinestBlock)
     return Verdict::breaks;  // no level has blocks so small
-  const CostModel model = candidate->cost_model(surface_);
+  const CostModel model = candidate->cost_model(surface_, samples->kind.first_order);
   const int width = surface_.width(), height = surface_.height();
   const double build_cost =
       is_chosen(*candidate) ? 0 : candidate->build_cost(surface_, samples->kind.roughness);
@@ -300,7 +300,7 @@ double AutoEvaluator::cost(Candidate* candidate, const std::vector<Query>& queri
     }
     counts = flops_counter_->evaluate(some);
   }
-  const CostModel model = candidate->cost_model(surface_);
+  const CostModel model = candidate->cost_model(surface_, has_first_order(queries.front()));
   double sum = 0;
   for (std::size_t n = 0; n < some.size(); ++n)
     sum += model.of(blocks_reached(some[n], surface_.width(), surface_.height()), counts[n]);

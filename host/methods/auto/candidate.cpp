@@ -63,15 +63,15 @@ std::unique_ptr<Evaluator> Candidate::make(Device& device, const Surface& surfac
   return std::make_unique<PyramidEvaluator>(device, surface, settings);
 }
 
-CostModel Candidate::cost_model(const Surface& surface) const {
-  if (kind == CandidateKind::triangles) return triangles_cost(surface.interpolation());
-  return kind == CandidateKind::gaussians ? gaussians_cost(elements) : pyramid_cost();
+CostModel Candidate::cost_model(const Surface& surface, bool first_order) const {
+  if (kind == CandidateKind::triangles) return triangles_cost(surface.interpolation(), first_order);
+  return kind == CandidateKind::gaussians ? gaussians_cost(elements, first_order) : pyramid_cost(first_order);
 }
 
 double Candidate::build_cost(const Surface& surface, int roughness) const {
   const double pieces =
       kind == CandidateKind::pyramid ? pieces_a_texel(surface, cell_width(roughness, precision)) : 1;
-  return cost_model(surface).texel * pieces * surface.width() * surface.height();
+  return cost_model(surface, false).texel * pieces * surface.width() * surface.height();
 }
 
 Candidates candidates_for(double tolerance, Interpolation interpolation) {

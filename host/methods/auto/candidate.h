@@ -30,7 +30,7 @@ struct Candidate {
   std::unique_ptr<Evaluator> make(Device& device, const Surface& surface,
                                   const std::shared_ptr<PyramidStore>& store,
                                   const TriangleEvaluator* triangles) const;
-  CostModel cost_model(const Surface& surface) const;
+  CostModel cost_model(const Surface& surface, bool first_order) const;
   /// Core nanoseconds. @param roughness of the class, as QueryClass has it.
   double build_cost(const Surface& surface, int roughness) const;
 };

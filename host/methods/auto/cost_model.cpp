@@ -12,17 +12,18 @@ double blocks_reached(const Query& query, int map_width, int map_height) {
   return blocks(axes.sigma_major_texels) * blocks(axes.sigma_minor_texels);
 }
 
-CostModel gaussians_cost(int elements) {
-  if (elements == 1) return {380, 221, 1.03, 70};
-  if (elements == 2) return {0, 612, 2.64, 160};
-  return {0, 820, 9.85, 530};
+CostModel gaussians_cost(int elements, bool first_order) {
+  if (elements == 1) return first_order ? CostModel{905, 879, 3.62, 105} : CostModel{539, 970, 2.88, 105};
+  if (elements == 2) return first_order ? CostModel{152, 1260, 11.1, 240} : CostModel{0, 1110, 9.56, 240};
+  return first_order ? CostModel{0, 2000, 37.8, 800} : CostModel{0, 1440, 33.4, 800};
 }
-CostModel triangles_cost(Interpolation interpolation) {
-  if (interpolation == Interpolation::nearest) return {0, 451, 0.0159, 20};
-  return {0, 879, 0.0139, 20};
+CostModel triangles_cost(Interpolation interpolation, bool first_order) {
+  if (interpolation == Interpolation::nearest)
+    return first_order ? CostModel{0, 950, 0.0725, 30} : CostModel{0, 659, 0.0668, 30};
+  return first_order ? CostModel{0, 1470, 0.0634, 30} : CostModel{0, 1290, 0.0582, 30};
 }
-CostModel pyramid_cost() {
-  return {365, 0, 1.42, 150};
+CostModel pyramid_cost(bool first_order) {
+  return first_order ? CostModel{621, 0, 15.1, 225} : CostModel{799, 0, 3.86, 225};
 }
 
 }  // namespace mica::host
