@@ -60,7 +60,7 @@ struct MaterialDescription {
   std::string name;
   std::string surface;                                       ///< name of a surface
   Eigen::Vector2d repeat{1, 1};                              ///< map periods over the shape's uv
-  std::string ndf = "triangles";                             ///< name of the method
+  std::string ndf = "auto";                                  ///< name of the method
   std::shared_ptr<const MethodSettings> settings = nullptr;  ///< the method's own
   double roughness = 0.01;  ///< sigma_r on the disk; of a long one the root mean square
   std::optional<Eigen::Vector2d> long_roughness = {};  ///< along u and v, where these differ

@@ -39,6 +39,7 @@ resolution = 4096
 [material.metal]
 surface = "noise"
 repeat = [8, 4]
+ndf = "triangles"
 roughness = 0.01
 diffuse = [0.1, 0.2, 0.3]
 [material.unused]

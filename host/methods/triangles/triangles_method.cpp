@@ -7,6 +7,7 @@
 #include "host/methods/method.h"
 #include "host/methods/oracle_standard.h"
 #include "host/methods/triangles/triangle_evaluator.h"
+#include "host/methods/triangles/triangle_precision.h"
 #include "mica/error.h"
 
 namespace mica::host {
@@ -34,10 +35,12 @@ class TrianglesMethod : public Method {
                                    tolerance, kExactTriangles));
   }
 
-  StructureSize structure(const StructureAsked& asked, const MethodSettings&) const override {
+  StructureSize structure(const StructureAsked& asked, const MethodSettings& settings) const override {
+    const int level = triangle_precision(tolerance_of(settings)).level;
     return {
         map_structure_bytes(asked.width, asked.height), 0,
-        fmt::format("triangles/triangles.cl -DMICA_INTERPOLATION={}", static_cast<int>(asked.interpolation))};
+        fmt::format("triangles/triangles.cl -DMICA_INTERPOLATION={}", static_cast<int>(asked.interpolation)) +
+            (level > 0 ? fmt::format(" -DMICA_PRECISION={}", level) : "")};
   }
 
   std::unique_ptr<Evaluator> make_own(Device* device, const Surface* surface,
