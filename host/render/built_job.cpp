@@ -68,8 +68,22 @@ BuiltJob::BuiltJob(const Job& job, const Plan& plan, Device& device, int frame, 
 void BuiltJob::build_evaluators(const std::vector<std::size_t>& changed) {
   const Stopwatch watch;
   for (const std::size_t n : changed) build_evaluator(n);
-  of_all_frames_.reset(), of_frame_.reset();
+  traced_.clear();
+  for (std::optional<SomeQueries>* some : {&of_all_frames_, &of_frame_}) {
+    if (*some && traced_.empty()) traced_ = std::move((*some)->blocks);
+    some->reset();
+  }
   build_seconds_ = watch.seconds();
+}
+
+TracedRows BuiltJob::take_rows(int first_row, int row_count) {
+  const auto found = std::find_if(traced_.begin(), traced_.end(), [&](const TracedRows& rows) {
+    return rows.first_row == first_row && rows.row_count == row_count;
+  });
+  if (found == traced_.end()) return trace(first_row, row_count);
+  TracedRows rows = std::move(*found);
+  traced_.erase(found);
+  return rows;
 }
 
 void BuiltJob::build_evaluator(std::size_t n) {

@@ -36,6 +36,8 @@ class BuiltJob {
   const Scene& scene() const { return scene_; }
   bool sees_scene() const { return !traces_otherwise_; }  ///< by the scene's camera; not TraceRows of others
   TracedRows trace(int first_row, int row_count) const { return trace_(scene_, first_row, row_count); }
+  /// The same, of which methods that choose may have traced some before: each once.
+  TracedRows take_rows(int first_row, int row_count);
   /// By PlannedEvaluator; only one that asks for densities.
   Evaluator& evaluator(std::size_t n) const { return *evaluators_[n]; }
   std::vector<Evaluator*> evaluators() const;  ///< likewise; null for the others
@@ -86,6 +88,7 @@ class BuiltJob {
   Device& device_;
   /// Of all frames, and of the present one; for methods that choose, while evaluators are built.
   std::optional<SomeQueries> of_all_frames_, of_frame_;
+  std::vector<TracedRows> traced_;  ///< of these, blocks of this frame that are yet to be asked for
   bool traces_otherwise_;
   TraceRows trace_;
   int frame_;

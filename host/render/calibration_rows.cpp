@@ -8,10 +8,7 @@
 namespace mica::host {
 namespace {
 
-/// Rows of a strip: those that are traced around it, for its pixels' filter, are as many again.
-constexpr int kRowsAStrip = 4;
-constexpr int kHeightAStrip = 60;  // of the picture, one strip
-constexpr int kFewestStrips = 2, kMostStrips = 6, kMostViews = 12;
+constexpr int kMostViews = 12, kRowsOfView = 4;
 constexpr double kGoldenRatio =
     0.6180339887498949;  // whose multiples, less whole numbers, fill [0, 1) evenly
 
@@ -23,24 +20,38 @@ void append_own(const TracedRows& rows, const Plan& plan, SomeQueries* queries) 
           glint.query);
 }
 
+/// Of a single frame: blocks as rendering traces them, which it need not trace again.
+void look_at_blocks(const Plan& plan, int height, const Scene& scene, const TraceRows& trace,
+                    SomeQueries* queries) {
+  const int rows = plan.rows_a_block, blocks = (height + rows - 1) / rows,
+            some = std::min(kMostBlocksLookedAt, (blocks + 1) / 2);
+  int traced = 0;
+  for (int n = 0; n < some; ++n) {
+    const int first = (2 * n + 1) * blocks / (2 * some) * rows;
+    queries->blocks.push_back(trace(scene, first, std::min(rows, height - first)));
+    append_own(queries->blocks.back(), plan, queries);
+    traced += queries->blocks.back().row_count;
+  }
+  queries->scale = static_cast<double>(height) / traced;
+}
+
 }  // namespace
 
 SomeQueries queries_of_some_rows(const Plan& plan, int height, const FrameRange& frames,
                                  const std::function<Scene(int)>& scene_at, const TraceRows& trace) {
-  const int views = std::min(frames.count, kMostViews), rows = std::min(kRowsAStrip, height),
-            wanted = std::clamp(height / kHeightAStrip, kFewestStrips, kMostStrips),
-            strips = std::clamp((wanted + views - 1) / views, 1, height / rows);
-  SomeQueries queries{std::vector<std::vector<Query>>(plan.evaluators.size()), 1};
+  SomeQueries queries{std::vector<std::vector<Query>>(plan.evaluators.size()), 1, {}};
+  if (frames.count == 1) {
+    look_at_blocks(plan, height, scene_at(frames.first), trace, &queries);
+    return queries;
+  }
+  const int views = std::min(frames.count, kMostViews), rows = std::min(kRowsOfView, height);
   for (int view = 0; view < views; ++view) {
     const Scene scene =
         scene_at(frames.first + static_cast<int>((2LL * view + 1) * frames.count / (2 * views)));
-    const double shift = std::fmod(0.5 + kGoldenRatio * view, 1.0);  // other rows in every view
-    for (int strip = 0; strip < strips; ++strip) {
-      const int middle = static_cast<int>((strip + shift) * height / strips);
-      append_own(trace(scene, std::clamp(middle - rows / 2, 0, height - rows), rows), plan, &queries);
-    }
+    const double place = std::fmod(0.5 + kGoldenRatio * view, 1.0);  // other rows in every view
+    append_own(trace(scene, static_cast<int>(place * (height - rows + 1)), rows), plan, &queries);
   }
-  queries.scale = static_cast<double>(height) * frames.count / (static_cast<double>(rows) * strips * views);
+  queries.scale = static_cast<double>(height) * frames.count / (static_cast<double>(rows) * views);
   return queries;
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <set>
 
+#include "host/render/calibration_rows.h"
 #include "host/scene/aovs.h"
 #include "host/scene/disk_cells.h"
 #include "host/scene/scene.h"
@@ -58,8 +59,9 @@ void plan_structure(const Job& job, PlannedEvaluator* planned) {
   planned->device_bytes = size.device_bytes;
   planned->host_bytes += size.host_bytes;
   planned->kernel = size.kernel;
+  const MethodTraits traits = method_of(job, *planned).traits();
   if (planned->surface_index >= 0 && planned->asks_densities && may_ask_first_order(job) &&
-      method_of(job, *planned).traits().first_order)
+      traits.first_order && !traits.chooses)  // what it chooses is not known yet
     planned->kernel += fmt::format(", {} -DMICA_FIRST_ORDER=1", size.kernel);
 }
 
@@ -226,6 +228,10 @@ Plan make_plan(const Job& job) {
   }
   plan.device_bytes += kBatchesInFlight * block * (sizeof(device_types::mica_map_query) + sizeof(float));
   const std::size_t of_parts = plan.rows_a_block * queries_of_parts_a_row(job);
+  const bool chooses = std::any_of(
+      plan.evaluators.begin(), plan.evaluators.end(),
+      [&](const PlannedEvaluator& evaluator) { return method_of(job, evaluator).traits().chooses; });
+  if (chooses) plan.host_bytes += kMostBlocksLookedAt * (block + of_parts) * sizeof(GlintQuery);
   plan.host_bytes += kBatchesInFlight * ((block + of_parts) * (sizeof(GlintQuery) + sizeof(float)) +
                                          block * (sizeof(Query) + sizeof(device_types::mica_map_query)));
   plan.host_bytes += sizeof(float) * plan.channels.size() * job.image.width * job.image.height;

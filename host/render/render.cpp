@@ -98,7 +98,7 @@ std::vector<float> estimate_errors(const BuiltJob& built, const TracedRows& rows
 }
 
 /// Traces and evaluates rows; the device evaluates one block while the host traces the next.
-void evaluate_rows(const BuiltJob& built, const RowRange& rows, const RenderProgress& progress,
+void evaluate_rows(BuiltJob& built, const RowRange& rows, const RenderProgress& progress,
                    const TakeRows& take, AuditSampler* sampler, RenderResult* result) {
   const Stopwatch total;
   const int rows_a_block = built.plan().rows_a_block;
@@ -112,7 +112,7 @@ void evaluate_rows(const BuiltJob& built, const RowRange& rows, const RenderProg
     std::optional<PendingBlock> next;
     if (row < end) {
       const Stopwatch tracing;
-      TracedRows traced = built.trace(row, std::min(rows_a_block, end - row));
+      TracedRows traced = built.take_rows(row, std::min(rows_a_block, end - row));
       result->seconds.trace += tracing.seconds();
       const Stopwatch gathering;
       result->queries += add_lit_brdfs(built, &traced, OfferBrdfs(built, traced.first_row, sampler));

@@ -28,6 +28,7 @@ correlation = 8
 [material.metal]
 surface = "noise"
 repeat = [8, 4]
+ndf = "triangles"
 roughness = 0.02
 [[shape]]
 type = "sphere"

@@ -40,6 +40,10 @@ constexpr double kCountingSeconds = 0.1;
 constexpr double kLookingShare = 0.1;
 constexpr double kExactCost = 5;  // of exact triangles, in those of a tolerance; or less
 
+/// Share of the squared error that all classes together may have, in which those may have more than theirs
+/// whose queries show next to nothing.
+constexpr double kDimShare = 0.1;
+
 /// Evaluates up to the first `end` of the queries, from where `densities` end.
 void extend(Evaluator* evaluator, const std::vector<Query>& queries, std::size_t end,
             std::vector<float>* densities) {
@@ -47,20 +51,6 @@ void extend(Evaluator* evaluator, const std::vector<Query>& queries, std::size_t
   const auto at = [&](std::size_t n) { return queries.begin() + static_cast<std::ptrdiff_t>(n); };
   const std::vector<float> more = evaluator->evaluate({at(densities->size()), at(end)});
   densities->insert(densities->end(), more.begin(), more.end());
-}
-
-double typical_density(const std::vector<float>& densities) {
-  double squares = 0, sum = 0;
-  for (const double density : densities) squares += density * density, sum += density;
-  return sum > 0 ? squares / sum : 0;
-}
-
-/// What makes of estimates sqrt(D max(D, T)) of densities such that have the bound on their sum of squares.
-double share_of_bound(const std::vector<float>& densities, double typical) {
-  double squares = 0, estimates = 0;
-  for (const double density : densities)
-    squares += density * density, estimates += density * std::max(density, typical);
-  return estimates > 0 ? std::sqrt(squares / estimates) : 1;
 }
 
 }  // namespace
@@ -132,6 +122,7 @@ void AutoEvaluator::calibrate(const CalibrationSample& sample) {
   // Wide footprints first: there structures keep the tolerance most often, and one that is used is not lost.
   std::reverse(classes.begin(), classes.end());
   for (Samples& samples : classes) choices_.push_back(choose(&samples));
+  take_exact_triangles(classes);
   std::sort(choices_.begin(), choices_.end(),
             [](const AutoChoice& a, const AutoChoice& b) { return a.kind < b.kind; });
   drop_what_nothing_uses();
@@ -214,11 +205,31 @@ void AutoEvaluator::check_triangles(Samples* samples, AutoChoice* choice) {
   const SampledError error = sampled_error(densities, samples->expected, kQuantile);
   choice->samples = samples->expected.size();
   choice->relative_l2 = error.relative_l2;
-  choice->upper_bound = std::min(tolerance_, error.upper_bound + samples->reference_error);
-  if (error.relative_l2 <= tolerance_) return;
-  candidate_of_[samples->kind] = candidates_.exact_triangles;
-  choice->evaluator = candidates_.all[candidates_.exact_triangles].label;
-  choice->relative_l2 = 0, choice->upper_bound = kExactTriangles;
+  choice->upper_bound = error.upper_bound + samples->reference_error;
+  if (error.relative_l2 <= tolerance_) choice->upper_bound = std::min(tolerance_, choice->upper_bound);
+}
+
+void AutoEvaluator::take_exact_triangles(const std::vector<Samples>& classes) {
+  std::vector<std::pair<double, std::size_t>> broken;  // what triangles are off by, squared
+  double squares = 0;                                  // of all densities
+  for (std::size_t n = 0; n < classes.size(); ++n) {
+    const Samples& samples = classes[n];
+    const double in_job =
+        std::isfinite(samples.in_job) ? samples.in_job : static_cast<double>(samples.queries.size());
+    const double of_class = in_job * mean_square(samples.expected), error = choices_[n].relative_l2;
+    squares += of_class;
+    if (candidate_of_[samples.kind] == candidates_.triangles && error > tolerance_)
+      broken.emplace_back(error * error * of_class, n);
+  }
+  std::sort(broken.begin(), broken.end());
+  double may_be = kDimShare * tolerance_ * tolerance_ * squares;
+  for (const auto& [error, n] : broken) {
+    may_be -= error;
+    if (may_be >= 0) continue;
+    candidate_of_[classes[n].kind] = candidates_.exact_triangles;
+    choices_[n].evaluator = candidates_.all[candidates_.exact_triangles].label;
+    choices_[n].relative_l2 = 0, choices_[n].upper_bound = kExactTriangles;
+  }
 }
 
 void AutoEvaluator::refer_to_pyramid(Samples* samples) {

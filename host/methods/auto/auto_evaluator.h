@@ -85,8 +85,11 @@ class AutoEvaluator : public Evaluator {
   AutoChoice choose(Samples* samples);
   /// The cheapest of a method that keeps the tolerance, in place of `best` where it is cheaper.
   void choose_of(CandidateKind method, Samples* samples, AutoChoice* best);
-  /// How far triangles are off; exact ones, where the samples contradict what triangles promise.
+  /// How far triangles are off.
   void check_triangles(Samples* samples, AutoChoice* choice);
+  /// Exact ones, where samples contradict what triangles promise; but not of classes so dim that what they
+  /// are off by is a small share of what all classes may be.
+  void take_exact_triangles(const std::vector<Samples>& classes);
   void drop_what_nothing_uses();
   /// Compares with a precise pyramid in place of triangles, where these show that it is precise.
   void refer_to_pyramid(Samples* samples);

@@ -41,4 +41,23 @@ SampledError sampled_error(const std::vector<float>& densities, const std::vecto
           error * std::exp(0.5 * deviation * (students + correction))};
 }
 
+double mean_square(const std::vector<float>& densities) {
+  double squares = 0;
+  for (const double density : densities) squares += density * density;
+  return densities.empty() ? 0 : squares / static_cast<double>(densities.size());
+}
+
+double typical_density(const std::vector<float>& densities) {
+  double squares = 0, sum = 0;
+  for (const double density : densities) squares += density * density, sum += density;
+  return sum > 0 ? squares / sum : 0;
+}
+
+double share_of_bound(const std::vector<float>& densities, double typical) {
+  double squares = 0, estimates = 0;
+  for (const double density : densities)
+    squares += density * density, estimates += density * std::max(density, typical);
+  return estimates > 0 ? std::sqrt(squares / estimates) : 1;
+}
+
 }  // namespace mica::host

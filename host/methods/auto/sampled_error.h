@@ -16,4 +16,13 @@ struct SampledError {
 SampledError sampled_error(const std::vector<float>& densities, const std::vector<float>& expected,
                            double quantile);
 
+/// Of densities: 0 of none.
+double mean_square(const std::vector<float>& densities);
+
+/// Sum of their squares over their sum; 0 where all are dark.
+double typical_density(const std::vector<float>& densities);
+
+/// What makes of estimates sqrt(D max(D, T)) of densities such that have the bound on their sum of squares.
+double share_of_bound(const std::vector<float>& densities, double typical);
+
 }  // namespace mica::host
