@@ -98,7 +98,7 @@ TEST_F(Layer, OfBlendersPlaneLooksAsItsPicture) {
   const std::string surface =
       "surface.bumps = { generate = \"spectrum\", resolution = 256, rms_slope = 0.4, correlation = 8, seed = "
       "1 }\n"
-      "material.a = { surface = \"bumps\", repeat = [4, 4], roughness = 0.1, id = 2 }\n";
+      "material.a = { surface = \"bumps\", ndf = \"triangles\", repeat = [4, 4], roughness = 0.1, id = 2 }\n";
   LayerSettings settings;
   settings.aovs = {LayerAov::density};
   BufferOptions options;

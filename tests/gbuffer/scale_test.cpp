@@ -101,7 +101,7 @@ class FilterOfScale : public Scale {
           },
           settings,
           "surface.bump = { file = \"bump.exr\", encoding = \"signed\" }\n"
-          "material.a = { surface = \"bump\", roughness = 0.05, id = 1 }\n");
+          "material.a = { surface = \"bump\", ndf = \"triangles\", roughness = 0.05, id = 1 }\n");
       const std::vector<float> light = channel("R");
       for (std::size_t n = 0; n < light.size(); ++n) {
         const double x = static_cast<double>(n % static_cast<std::size_t>(camera_.width)) + phase;

@@ -19,7 +19,7 @@ Job flat_job(const std::vector<std::string>& overrides) {
 image = { width = 40, height = 30 }
 camera = { position = [0.0, -2.0, 3.0], look_at = [0.0, 0.0, 0.0], fov = 30 }
 surface.flat = { generate = "spectrum", resolution = 64, rms_slope = 1e-5, correlation = 8 }
-material.metal = { surface = "flat", roughness = [0.15, 0.05] }
+material.metal = { surface = "flat", ndf = "triangles", roughness = [0.15, 0.05] }
 shape = [{ type = "plane", material = "metal", size = 4 }]
 light = [{ type = "point", position = [0.3, 2.0, 3.0], intensity = [9.0, 9.0, 9.0] }]
 )";

@@ -27,7 +27,7 @@ std::string job_of(const std::vector<Place>& lamps) {
 image = { width = 24, height = 24, subpixels = 4 }
 camera = { position = [0, -3.2, 1.4], look_at = [0, 0, 0.45], fov = 9 }
 surface.m = { generate = "spectrum", resolution = 256, rms_slope = 0.3, correlation = 8, seed = 1 }
-material.a = { surface = "m", repeat = [2, 2], roughness = 0.02, diffuse = [0.2, 0.1, 0.3] }
+material.a = { surface = "m", ndf = "triangles", repeat = [2, 2], roughness = 0.02, diffuse = [0.2, 0.1, 0.3] }
 shape = [{ type = "shell", material = "a" }]
 )";
   for (const Place& p : lamps)

@@ -150,7 +150,7 @@ std::string plane_job(const std::string& lamp_height, const std::string& more = 
 image = { width = 1, height = 1, subpixels = 1, filter = "subpixels" }
 camera = { position = [0, -0.001, 3], look_at = [0, 0, 0], fov = 1 }
 surface.bumps = { generate = "spectrum", resolution = 32, rms_slope = 0.3, correlation = 4 }
-material.gold = { surface = "bumps", roughness = 0.1, diffuse = [0.1, 0.07, 0.02] }
+material.gold = { surface = "bumps", ndf = "triangles", roughness = 0.1, diffuse = [0.1, 0.07, 0.02] }
 shape = [{ type = "plane", material = "gold" }]
 light = [{ type = "point", position = [0, 0, )"
                       << lamp_height << "], intensity = [1e9, 1e9, 1e9] }]\n"

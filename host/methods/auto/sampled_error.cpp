@@ -33,7 +33,7 @@ SampledError sampled_error(const std::vector<float>& densities, const std::vecto
     third_moment += influence * influence * influence / count;
   }
   const double deviation = std::sqrt(second_moment / (count - 1)),
-               skewness = std::max(third_moment / std::pow(second_moment, 1.5), 0.0),
+               skewness = second_moment > 0 ? std::max(third_moment / std::pow(second_moment, 1.5), 0.0) : 0,
                students = quantile + (std::pow(quantile, 3) + quantile) / (4 * (count - 1)),
                correction = skewness * (1 + 2 * quantile * quantile) / (6 * std::sqrt(count));
   const double error = std::sqrt(ratio);
