@@ -37,7 +37,7 @@ constexpr double kQuantile = 2.2414;
 constexpr double kCountingSeconds = 0.1;
 /// Share of what a class's queries cost by triangles that looking at them may take, and of all classes' that
 /// structures may which are then not used.
-constexpr double kLookingShare = 0.1;
+constexpr double kLookingShare = 0.05;
 constexpr double kExactCost = 5;  // of exact triangles, in those of a tolerance; or less
 
 /// Share of the squared error that all classes together may have, in which those may have more than theirs

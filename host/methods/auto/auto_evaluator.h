@@ -32,7 +32,7 @@ CalibrationSample calibration_sample(std::size_t count, std::size_t each, int ma
 
 /// `auto`: for each class of a job's queries the cheapest evaluator that keeps a tolerance. `triangles` to
 /// that tolerance promise it; pyramids and mixtures are taken where a sample of the job's queries, compared
-/// with exact triangles, shows at 95% confidence that they keep it, too. To look costs at most a tenth of
+/// with exact triangles, shows at 95% confidence that they keep it, too. To look costs at most a twentieth of
 /// what the job's queries do by triangles, and what cannot be won is not looked at. What is cheapest is told
 /// by counting elements, not by a clock: the same queries get the same answers.
 class AutoEvaluator : public Evaluator {
