@@ -67,13 +67,14 @@ BuiltJob::BuiltJob(const Job& job, const Plan& plan, Device& device, int frame, 
 
 void BuiltJob::build_evaluators(const std::vector<std::size_t>& changed) {
   const Stopwatch watch;
+  trace_seconds_ = 0;
   for (const std::size_t n : changed) build_evaluator(n);
   traced_.clear();
   for (std::optional<SomeQueries>* some : {&of_all_frames_, &of_frame_}) {
     if (*some && traced_.empty()) traced_ = std::move((*some)->blocks);
     some->reset();
   }
-  build_seconds_ = watch.seconds();
+  build_seconds_ = watch.seconds() - trace_seconds_;
 }
 
 TracedRows BuiltJob::take_rows(int first_row, int row_count) {
@@ -127,9 +128,12 @@ void BuiltJob::calibrate(std::size_t n, Evaluator* evaluator) {
                                 ? FrameRange{frame_, 1}
                                 : FrameRange{job_.frames.first, job_.frames.last - job_.frames.first + 1};
   std::optional<SomeQueries>& some = for_one_frame ? of_frame_ : of_all_frames_;
-  if (!some)
+  if (!some) {
+    const Stopwatch tracing;
     some = queries_of_some_rows(
         plan_, job_.image.height, frames, [&](int frame) { return scene_at(frame); }, trace_);
+    if (!some->blocks.empty()) trace_seconds_ += tracing.seconds();
+  }
   const std::vector<Query>& queries = some->of_evaluator[n];
   const double directions = plan_.gathers_light ? 1 + job_.image.samples : 1;
   evaluator->calibrate(

@@ -54,8 +54,9 @@ class BuiltJob {
   double surface_seconds() const { return surface_seconds_; }
   double scene_seconds() const { return scene_seconds_; }
   double build_seconds() const { return build_seconds_; }
-  std::size_t device_bytes() const;  ///< of all structures, as allocated
-  double device_seconds() const;     ///< that kernels ran so far, by the device's clock
+  double trace_seconds() const { return trace_seconds_; }  ///< of rows of the picture that were traced before
+  std::size_t device_bytes() const;                        ///< of all structures, as allocated
+  double device_seconds() const;                           ///< that kernels ran so far, by the device's clock
 
   /// The largest of its surfaces; see mica::host::precision_error. For each, its materials' least roughness.
   double precision_error() const;
@@ -92,7 +93,7 @@ class BuiltJob {
   bool traces_otherwise_;
   TraceRows trace_;
   int frame_;
-  double surface_seconds_ = 0, scene_seconds_ = 0, build_seconds_ = 0;
+  double surface_seconds_ = 0, scene_seconds_ = 0, build_seconds_ = 0, trace_seconds_ = 0;
   std::string inputs_;
   double past_device_seconds_ = 0;  // of evaluators that are no more
   std::size_t past_replaced_answers_ = 0;

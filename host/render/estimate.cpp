@@ -174,7 +174,7 @@ Evaluated measure_densities(const BuiltJob& built, Device& device, const Sampled
 Estimate estimate(const Job& job, const Plan& plan, Device& device) {
   const Stopwatch building;
   const BuiltJob built(job, plan, device);
-  const double build_seconds = building.seconds();
+  const double build_seconds = building.seconds() - built.trace_seconds();
   const SampledRows sampled = trace_samples(built.scene(), job);
   const Gathered gathered = measure_gathering(built, device, sampled.rows);
   const Evaluated evaluated = measure_densities(built, device, sampled);

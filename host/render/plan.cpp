@@ -18,6 +18,10 @@
 namespace mica::host {
 namespace {
 
+/// Of a block at the least: with fewer too much is traced twice, what pixels see of the rows around it. More
+/// where their queries, sixteen a pixel and lamp if no pixel is fitted, would not fill the host's memory; the
+/// device has no more of them at a time than few rows may ask.
+constexpr std::size_t kFewRows = 16, kManyRows = 32, kMostQueriesOfManyRows = 1 << 21;
 constexpr int kBatchesInFlight = 2;  // one on the device while the next is traced
 
 PlannedEvaluator plan_evaluator(const Job& job, int surface_index, int material_index, bool gathers) {
@@ -210,12 +214,15 @@ Plan make_plan(const Job& job) {
               "of a patch's BRDF, and of glints without a map");
   plan.queries_a_batch = kQueriesABatch;
   const std::size_t queries_a_row = samples_a_row(job) * std::max<std::size_t>(job.scene.lights.size(), 1);
-  // Fewer would trace too much twice: what pixels see of the rows around a block.
-  const std::size_t least_rows = std::min(16, job.image.height);
-  plan.rows_a_block =
-      static_cast<int>(std::clamp<std::size_t>(kQueriesABatch / queries_a_row, least_rows, job.image.height));
+  const std::size_t rows_of_batch = kQueriesABatch / queries_a_row;
+  const auto rows_at_least = [&](std::size_t rows) {
+    const std::size_t least = std::min<std::size_t>(rows, static_cast<std::size_t>(job.image.height));
+    return std::clamp<std::size_t>(rows_of_batch, least, static_cast<std::size_t>(job.image.height));
+  };
+  const bool many_rows = kManyRows * queries_a_row <= kMostQueriesOfManyRows;
+  plan.rows_a_block = static_cast<int>(rows_at_least(many_rows ? kManyRows : kFewRows));
 
-  std::size_t block = plan.rows_a_block * queries_a_row;
+  std::size_t block = rows_at_least(kFewRows) * queries_a_row;
   if (plan.gathers_light)  // of each sample's directions two questions, in batches; see gather_light
     block += 2 * std::min<std::size_t>(plan.queries_a_batch, static_cast<std::size_t>(plan.rows_a_block) *
                                                                  job.image.width * job.image.subpixels *
@@ -227,12 +234,13 @@ Plan make_plan(const Job& job) {
     plan.device_bytes += evaluator.device_bytes;
   }
   plan.device_bytes += kBatchesInFlight * block * (sizeof(device_types::mica_map_query) + sizeof(float));
+  const std::size_t traced = plan.rows_a_block * queries_a_row;
   const std::size_t of_parts = plan.rows_a_block * queries_of_parts_a_row(job);
   const bool chooses = std::any_of(
       plan.evaluators.begin(), plan.evaluators.end(),
       [&](const PlannedEvaluator& evaluator) { return method_of(job, evaluator).traits().chooses; });
-  if (chooses) plan.host_bytes += kMostBlocksLookedAt * (block + of_parts) * sizeof(GlintQuery);
-  plan.host_bytes += kBatchesInFlight * ((block + of_parts) * (sizeof(GlintQuery) + sizeof(float)) +
+  if (chooses) plan.host_bytes += kMostBlocksLookedAt * (traced + of_parts) * sizeof(GlintQuery);
+  plan.host_bytes += kBatchesInFlight * ((traced + of_parts) * (sizeof(GlintQuery) + sizeof(float)) +
                                          block * (sizeof(Query) + sizeof(device_types::mica_map_query)));
   plan.host_bytes += sizeof(float) * plan.channels.size() * job.image.width * job.image.height;
   return plan;

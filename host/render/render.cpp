@@ -181,7 +181,8 @@ RenderResult evaluate_frame(BuiltJob& built, int frame, const DeviceInfo& device
   result.plan = built.plan();
   double before = 0;  // seconds that building took when this began
   if (frame == built.frame()) {
-    before = built.surface_seconds() + built.scene_seconds() + built.build_seconds();
+    before = built.surface_seconds() + built.scene_seconds() + built.build_seconds() + built.trace_seconds();
+    result.seconds.trace = built.trace_seconds();
   } else {
     built.go_to(frame);
   }
