@@ -138,7 +138,10 @@ double SharedEvaluator::error_estimate(const Query& query, double density) const
 
 std::size_t SharedEvaluator::replaced() const {
   std::size_t count = 0;
-  for (const auto& part : parts_) count += part->share.evaluator->replaced();
+  for (const auto& part : parts_) {
+    const std::lock_guard<std::mutex> lock(part->busy);  // it counts as it works
+    count += part->share.evaluator->replaced();
+  }
   return count;
 }
 
@@ -161,7 +164,7 @@ double SharedEvaluator::build_seconds() const {
 double SharedEvaluator::device_seconds() const {
   double seconds = 0;
   for (const auto& part : parts_) {
-    const std::lock_guard<std::mutex> lock(part->busy);  // it adds to them as it works
+    const std::lock_guard<std::mutex> lock(part->busy);
     seconds += part->share.evaluator->device_seconds();
   }
   return seconds;
