@@ -40,9 +40,9 @@ class SharedEvaluator::Densities : public PendingDensities {
         piece_(piece_of(queries_.size(), parts.size())),
         densities_(queries_.size()),
         pieces_((queries_.size() + piece_ - 1) / piece_),
-        errors_(parts.size()) {
+        failed_(parts.size()) {
     for (std::size_t n = 0; n < std::min(parts.size(), pieces_.size()); ++n)
-      threads_.emplace_back([this, part = parts[n].get(), error = &errors_[n]] { work(part, error); });
+      threads_.emplace_back([this, part = parts[n].get(), error = &failed_[n]] { work(part, error); });
   }
   ~Densities() override {
     next_ = pieces_.size();
@@ -53,7 +53,7 @@ class SharedEvaluator::Densities : public PendingDensities {
 
   std::vector<float> wait() override {
     join();
-    for (const std::exception_ptr& error : errors_)
+    for (const std::exception_ptr& error : failed_)
       if (error) std::rethrow_exception(error);
     return std::move(densities_);
   }
@@ -101,7 +101,7 @@ class SharedEvaluator::Densities : public PendingDensities {
   const std::size_t piece_;               // queries of each but the last
   std::vector<float> densities_;
   std::vector<std::unique_ptr<PendingDensities>> pieces_;
-  std::vector<std::exception_ptr> errors_;  // by thread
+  std::vector<std::exception_ptr> failed_;  // by thread
   std::atomic<std::size_t> next_{0};
   std::vector<std::thread> threads_;
 };
