@@ -39,8 +39,8 @@ class SharedEvaluator::Densities : public PendingDensities {
         points_(std::move(points)),
         piece_(piece_of(queries_.size(), parts.size())),
         densities_(queries_.size()),
-        pieces_((queries_.size() + piece_ - 1) / piece_),
-        failed_(parts.size()) {
+        pieces_((queries_.size() + piece_ - 1) / piece_) {
+    failed_.resize(parts.size());
     for (std::size_t n = 0; n < std::min(parts.size(), pieces_.size()); ++n)
       threads_.emplace_back([this, part = parts[n].get(), error = &failed_[n]] { work(part, error); });
   }
