@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cstdlib>
+#include <numeric>
 #include <optional>
 #include <vector>
 
@@ -42,16 +44,57 @@ int device_of_this_process() {
   return candidates[static_cast<std::size_t>(*number) % candidates.size()];
 }
 
+/// What is asked for, and where.
+struct Wanted {
+  std::string text, source;
+
+  [[noreturn]] void refuse(const std::string& expected) const {
+    throw UsageError(fmt::format("{}{}: expected {}", source, text, expected));
+  }
+};
+
+Wanted wanted_by(const DeviceOption& option) {
+  if (!option.text.empty()) return {option.text, "--device "};
+  return {variable("MICA_DEVICE"), "MICA_DEVICE="};
+}
+
+std::vector<int> numbers_of_all() {
+  std::vector<int> all(list_devices().size());
+  if (all.empty()) throw no_device();
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+
+bool is_several(const Wanted& wanted) {
+  return wanted.text == "all" || wanted.text.find(',') != std::string::npos;
+}
+
 }  // namespace
 
 int DeviceOption::index() const {
-  const std::string of_environment = text.empty() ? variable("MICA_DEVICE") : "";
-  const std::string& wanted = text.empty() ? of_environment : text;
-  if (wanted.empty()) return 0;
-  if (wanted == "auto") return device_of_this_process();
-  if (const std::optional<int> number = whole_number(wanted)) return *number;
-  throw UsageError(fmt::format("{}{}: expected a number that `mica devices` lists, or auto",
-                               text.empty() ? "MICA_DEVICE=" : "--device ", wanted));
+  const Wanted wanted = wanted_by(*this);
+  if (wanted.text.empty()) return 0;
+  if (wanted.text == "auto") return device_of_this_process();
+  if (is_several(wanted))
+    wanted.refuse("one device: `mica render` and `mica eval` of a P-NDF share their work among several");
+  if (const std::optional<int> number = whole_number(wanted.text)) return *number;
+  wanted.refuse("a number that `mica devices` lists, or auto");
+}
+
+std::vector<int> DeviceOption::indices() const {
+  const Wanted wanted = wanted_by(*this);
+  if (!is_several(wanted)) return {index()};
+  if (wanted.text == "all") return numbers_of_all();
+  std::vector<int> numbers;
+  for (std::size_t first = 0; first <= wanted.text.size();) {
+    const std::size_t end = std::min(wanted.text.find(',', first), wanted.text.size());
+    const std::optional<int> number = whole_number(wanted.text.substr(first, end - first));
+    if (!number || std::count(numbers.begin(), numbers.end(), *number) > 0)
+      wanted.refuse("numbers that `mica devices` lists, each once, or all");
+    numbers.push_back(*number);
+    first = end + 1;
+  }
+  return numbers;
 }
 
 void add_device_option(CommandLine* command, DeviceOption* device) {
@@ -60,6 +103,16 @@ void add_device_option(CommandLine* command, DeviceOption* device) {
           "--device", device->text,
           "OpenCL device, by its number in `mica devices`; auto: by the process's number on its node; "
           "default MICA_DEVICE, or 0")
+      .type_name("N");
+}
+
+void add_devices_option(CommandLine* command, DeviceOption* device, const std::string& what) {
+  command
+      ->add_option("--device", device->text,
+                   fmt::format("OpenCL device, by its number in `mica devices`; several with commas, or all: "
+                               "they share {}; auto: one, by the process's number on its node; default "
+                               "MICA_DEVICE, or 0",
+                               what))
       .type_name("N");
 }
 

@@ -56,6 +56,7 @@ nlohmann::json summary(const EvalOptions& options, const EvalSubject& subject, c
   if (options.method.tolerance) json["tolerance"] = *options.method.tolerance;
   if (nlohmann::json choices = describe_choices(open); !choices.empty()) json["auto"] = std::move(choices);
   json["device"] = open.device ? describe_device(open.device->info()) : nlohmann::json();
+  for (const auto& device : open.further) json["further_devices"].push_back(describe_device(device->info()));
   json["device_bytes"] = open.evaluator->device_bytes();
   json["seconds"] = {
       {"load", times.load}, {"build", times.build}, {"evaluate", times.evaluate}, {"device", times.device}};
@@ -112,7 +113,7 @@ int run(const EvalOptions& options) {
   table.check(rows, [&](const Query& query) { return method.query_problem(query, subject.map()); });
   if (subject.map() != nullptr) log_precision(*subject.map(), least_roughness(table, rows));
   times.load = lap(&start);
-  const OpenEvaluator open = open_evaluator(method, *settings, options.device, subject.map());
+  const OpenEvaluator open = open_shared_evaluator(method, *settings, options.device, subject.map());
   open.evaluator->calibrate(
       table.size(), [&](std::size_t row) { return table.query(row); }, 1);
   log_choices(open);
@@ -127,8 +128,8 @@ int run(const EvalOptions& options) {
   output.finish();
   if (const std::size_t replaced = open.evaluator->replaced())
     spdlog::warn("{} densities were not finite: the oracle's are in their place", replaced);
-  spdlog::info("{} queries by {} on {} in {:.3g} s", rows.count(), open.evaluator->name(),
-               open.device ? open.device->info().name : "the host", times.evaluate);
+  spdlog::info("{} queries by {} on {} in {:.3g} s", rows.count(), open.evaluator->name(), device_names(open),
+               times.evaluate);
   if (!options.json.empty()) write_json(options.json, summary(options, subject, open, rows.count(), times));
   return 0;
 }
@@ -199,7 +200,7 @@ void add_eval(CommandLine& app, Command* chosen, const MethodRegistry& methods) 
       ->add_option("--json", options->json,
                    "Writes what was done: map, device, bytes, seconds, queries a second")
       .type_name("FILE");
-  add_device_option(command, &options->device);
+  add_devices_option(command, &options->device, "the rows of --quantity ndf");
   command->callback([options, chosen] { *chosen = [options] { return run(*options); }; });
 }
 

@@ -8,10 +8,12 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <set>
 
 #include "host/app/progress.h"
 #include "host/base/chunks.h"
 #include "host/base/interrupt.h"
+#include "host/methods/shared_evaluator.h"
 #include "mica/error.h"
 
 namespace mica::host::app {
@@ -22,6 +24,31 @@ OpenEvaluator open_evaluator(const Method& method, const MethodSettings& setting
   if (method.traits().device) open.device = std::make_unique<Device>(device.index());
   open.evaluator = method.make(open.device.get(), surface, settings);
   return open;
+}
+
+OpenEvaluator open_shared_evaluator(const Method& method, const MethodSettings& settings,
+                                    const DeviceOption& devices, const Surface* surface) {
+  method.check(settings);
+  if (!method.traits().device) return open_evaluator(method, settings, devices, surface);
+  OpenEvaluator open;
+  std::vector<Device*> all;
+  for (const int index : devices.indices()) {
+    auto device = std::make_unique<Device>(index);
+    all.push_back(device.get());
+    if (!open.device)
+      open.device = std::move(device);
+    else
+      open.further.push_back(std::move(device));
+  }
+  open.evaluator = make_on(all, method, surface, settings);
+  return open;
+}
+
+std::string device_names(const OpenEvaluator& open) {
+  if (!open.device) return "the host";
+  std::set<std::string> names = {open.device->info().name};
+  for (const auto& device : open.further) names.insert(device->info().name);
+  return fmt::format("{}", fmt::join(names, "; "));
 }
 
 void log_choices(const OpenEvaluator& open) {

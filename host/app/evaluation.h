@@ -15,9 +15,10 @@
 
 namespace mica::host::app {
 
-/// An evaluator, and the device that it needs.
+/// An evaluator, and the devices that it needs.
 struct OpenEvaluator {
-  std::unique_ptr<Device> device;  ///< null for a method that runs on the host
+  std::unique_ptr<Device> device;                ///< null for a method that runs on the host
+  std::vector<std::unique_ptr<Device>> further;  ///< that share its work
   std::unique_ptr<Evaluator> evaluator;
 };
 
@@ -26,6 +27,13 @@ struct OpenEvaluator {
 /// Throws DeviceError, and UsageError for settings that the method cannot keep.
 OpenEvaluator open_evaluator(const Method& method, const MethodSettings& settings, const DeviceOption& device,
                              const Surface* surface);
+
+/// The same on all devices that are given, which share its queries.
+OpenEvaluator open_shared_evaluator(const Method& method, const MethodSettings& settings,
+                                    const DeviceOption& devices, const Surface* surface);
+
+/// The names of all its devices, each once, or "the host".
+std::string device_names(const OpenEvaluator& open);
 
 /// Logs what a method that chooses among others chose.
 void log_choices(const OpenEvaluator& open);

@@ -1,6 +1,10 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <filesystem>
+#include <memory>
+#include <set>
+#include <vector>
 
 #include "host/app/commands.h"
 #include "host/app/device_option.h"
@@ -43,6 +47,30 @@ struct Targets {
     }
     return paths;
   }
+};
+
+/// Devices that share a job.
+class Devices {
+ public:
+  Devices(const std::vector<int>& indices, const Plan& plan) {
+    check_sharing(plan, indices.size());
+    for (const int index : indices) devices_.push_back(std::make_unique<Device>(index));
+    std::set<std::string> names;
+    for (const auto& device : devices_) names.insert(device->info().name);
+    info_ = devices_.front()->info();
+    info_.name = fmt::format("{}", fmt::join(names, "; "));
+  }
+  std::vector<Device*> all() const {
+    std::vector<Device*> all;
+    for (const auto& device : devices_) all.push_back(device.get());
+    return all;
+  }
+  /// Of the first, with the names of all.
+  const DeviceInfo& info() const { return info_; }
+
+ private:
+  std::vector<std::unique_ptr<Device>> devices_;
+  DeviceInfo info_;
 };
 
 /// One call of `mica render`.
@@ -108,16 +136,20 @@ class RenderRun {
 
   void render_frames(const Job& job, const Plan& plan, const std::vector<int>& frames, FrameLoop* loop) {
     frames_ = frames;
-    Device device(options_.device.index());
+    const Devices devices(options_.device.indices(), plan);
     if (!options_.quiet) say("{}", describe(plan));
-    log_.write("phase", {{"phase", "build"}, {"device", device.info().name}});
-    BuiltJob built(job, plan, device, frames.front());
+    log_.write("phase", {{"phase", "build"}, {"device", devices.info().name}});
+    BuiltJob built(job, plan, devices.all(), frames.front());
     loop->say_findings(built);
     for (const int frame : frames) {
-      loop->render(built, frame, device.info());
+      loop->render(built, frame, devices.info());
       frames_.erase(frames_.begin());
     }
-    log_.write("kernels", {{"compiled", device.compiled()}, {"of", device.programs().size()}});
+    int compiled = 0;
+    std::size_t programs = 0;
+    for (const Device* device : devices.all())
+      compiled += device->compiled(), programs += device->programs().size();
+    log_.write("kernels", {{"compiled", compiled}, {"of", programs}});
   }
 
   void tell_start(const Job& job, const Targets& targets) {
@@ -164,7 +196,7 @@ void add_render(CommandLine& app, Command* chosen, const MethodRegistry& methods
   command->add_option("--rows", options->rows, "Render these rows alone, from 0 at the top").type_name("A-B");
   command->add_flag("--skip-finished", options->skip_finished,
                     "Leave out what is there, whole, and by its header what the job would make");
-  add_device_option(command, &options->device);
+  add_devices_option(command, &options->device, "lamps' densities");
   command->add_option("--json", options->json, "Write what was done: plan, bytes, seconds, queries/s, audit");
   command->add_option("--json-log", options->log, "Write what happens, one JSON object a line, at FILE's end")
       .type_name("FILE");

@@ -1,5 +1,8 @@
 #include "host/measure/contenders.h"
 
+#include <algorithm>
+
+#include "host/job/job.h"
 #include "mica/error.h"
 
 namespace mica::host::bench {
@@ -13,6 +16,16 @@ std::vector<Contender> contenders(const MethodRegistry& methods, const std::vect
       all.push_back({method->name(), method, std::move(variant.settings), variant.label, variant.knob});
   }
   return all;
+}
+
+bool is_on_curve(const Contender& contender) {
+  const double usual = AccuracySettings().tolerance;
+  return contender.settings->tolerance.value_or(usual) != usual;
+}
+
+std::vector<Contender> without_curves(std::vector<Contender> contenders) {
+  contenders.erase(std::remove_if(contenders.begin(), contenders.end(), is_on_curve), contenders.end());
+  return contenders;
 }
 
 std::vector<Prepared> prepare(const std::vector<Contender>& contenders, Device& device,

@@ -22,6 +22,11 @@ struct Contender {
 /// Every method that is compared on maps; those whose elements can be chosen once for each of `elements`.
 std::vector<Contender> contenders(const MethodRegistry& methods, const std::vector<int>& elements);
 
+/// Whether it is one of a curve over tolerances, and not what jobs ask for by default: measured in cells, and
+/// shown nowhere else.
+bool is_on_curve(const Contender& contender);
+std::vector<Contender> without_curves(std::vector<Contender> contenders);
+
 /// A contender on a surface, ready to answer.
 struct Prepared {
   Contender contender;

@@ -94,6 +94,7 @@ Measurement measure(const Prepared& prepared, const Surface& surface, const Mach
   Measurement m;
   m.evaluator = prepared.contender.evaluator, m.label = prepared.contender.label,
   m.knob = prepared.contender.knob;
+  m.tolerance = prepared.contender.settings->tolerance.value_or(0);
   m.refused = prepared.refused;
   if (!prepared.evaluator) return m;
   Evaluator& evaluator = *prepared.evaluator;

@@ -28,6 +28,7 @@ struct Speed {
 struct Measurement {
   std::string evaluator, label;  ///< "gaussians", "gaussians, 2 a texel"
   std::string knob;              ///< what tells it from the evaluator's other measurements: "2", or empty
+  double tolerance = 0;          ///< asked for, relative; 0: what the evaluator keeps by itself
   std::string refused;           ///< why it was not measured, or empty
   Speed speed;
   Errors errors;

@@ -87,12 +87,11 @@ struct Bench {
   reference::Oracle oracle;
   std::vector<Prepared> contenders;
 
-  Bench(const NamedSurface& named, int resolution, const std::vector<int>& elements,
-        const MethodRegistry& methods, Device& device)
+  Bench(const NamedSurface& named, int resolution, const std::vector<Contender>& all, Device& device)
       : name(named.name),
         surface(make_surface(named.describe(resolution), nullptr)),
         oracle(surface, kOracleTolerance),
-        contenders(prepare(bench::contenders(methods, elements), device, surface)) {}
+        contenders(prepare(all, device, surface)) {}
 };
 
 Cell measure_cell(const Suite& suite, const Bench& bench, double reference_share, double sigma_texels,
@@ -118,7 +117,7 @@ void measure_cells(const Suite& suite, const Machine& machine, const MethodRegis
                    const Progress& progress, Results* results) {
   for (const NamedSurface& named : suite.surfaces) {
     progress(fmt::format("building {} of {} texels", named.name, suite.resolution));
-    const Bench bench(named, suite.resolution, suite.elements, methods, device);
+    const Bench bench(named, suite.resolution, contenders(methods, suite.elements), device);
     for (const double sigma_texels : suite.sigmas_texels)
       for (const double roughness : suite.roughnesses)
         results->cells.push_back(
@@ -133,7 +132,7 @@ void measure_map_sizes(const Suite& suite, const Machine& machine, const MethodR
   constexpr double sigma_texels = 8, roughness = 0.005;
   for (const int size : suite.map_sizes) {
     progress(fmt::format("building spectrum of {} texels", size));
-    const Bench bench(kSpectrum, size, {1}, methods, device);
+    const Bench bench(kSpectrum, size, without_curves(contenders(methods, {1})), device);
     results->map_sizes.push_back(
         measure_cell(suite, bench, suite.reference_share / 8, sigma_texels, roughness, machine, progress));
   }
@@ -165,7 +164,8 @@ Results run_suite(const std::string& name, Device& device, const Progress& progr
   measure_cells(suite, machine, methods, device, progress, &results);
   measure_map_sizes(suite, machine, methods, device, progress, &results);
   results.grid = measure_grid(device, suite.effort, progress);
-  render_pictures(suite.picture_width, contenders(methods, suite.elements), device, progress, &results);
+  render_pictures(suite.picture_width, without_curves(contenders(methods, suite.elements)), device, progress,
+                  &results);
   results.seconds = watch.seconds();
   return results;
 }

@@ -55,7 +55,7 @@ ThumbnailRow thumbnails(const std::string& name, const Surface& surface,
   }
   row.thumbnails.push_back(std::move(reference));
   for (const Prepared& prepared : contenders) {
-    if (!prepared.evaluator) continue;  // the table of measurements says why
+    if (!prepared.evaluator || is_on_curve(prepared.contender)) continue;  // the table says why
     Thumbnail thumbnail{prepared.contender.evaluator, prepared.contender.label, side, {}, 0};
     thumbnail.densities = prepared.evaluator->evaluate(queries);
     thumbnail.relative_l2 = errors_of(thumbnail.densities, references).relative_l2;

@@ -10,6 +10,7 @@
 #include "host/base/stopwatch.h"
 #include "host/job/input_files.h"
 #include "host/methods/ndf_brdf.h"
+#include "host/methods/shared_evaluator.h"
 #include "host/methods/triangles/triangle_evaluator.h"
 #include "host/scene/keyframes.h"
 #include "host/surface/in_time.h"
@@ -43,9 +44,14 @@ BuiltJob::BuiltJob(const Job& job, const Plan& plan, Device& device)
     : BuiltJob(job, plan, device, job.frames.first) {}
 
 BuiltJob::BuiltJob(const Job& job, const Plan& plan, Device& device, int frame, TraceRows trace)
+    : BuiltJob(job, plan, std::vector<Device*>{&device}, frame, std::move(trace)) {}
+
+BuiltJob::BuiltJob(const Job& job, const Plan& plan, const std::vector<Device*>& devices, int frame,
+                   TraceRows trace)
     : job_(job),
       plan_(plan),
-      device_(device),
+      devices_(devices),
+      device_(*devices.front()),
       traces_otherwise_(trace),
       trace_(trace ? std::move(trace)
                    : [](const Scene& scene, int first_row,
@@ -114,7 +120,7 @@ std::unique_ptr<PatchBrdf> BuiltJob::make_brdf(std::size_t n) const {
 std::unique_ptr<Evaluator> BuiltJob::make_density_evaluator(std::size_t n) {
   const PlannedEvaluator& planned = plan_.evaluators[n];
   std::unique_ptr<Evaluator> evaluator =
-      method_of(job_, planned).make(&device_, surface(n), settings_of(job_, planned));
+      make_on(devices_, method_of(job_, planned), surface(n), settings_of(job_, planned));
   if (method_of(job_, planned).traits().chooses) calibrate(n, evaluator.get());
   return evaluator;
 }

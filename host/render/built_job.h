@@ -26,6 +26,11 @@ class BuiltJob {
   /// mica::Error.
   BuiltJob(const Job& job, const Plan& plan, Device& device);
   BuiltJob(const Job& job, const Plan& plan, Device& device, int frame, TraceRows trace = {});
+  /// @param devices one or more, which share the queries of densities; each has all structures for them. All
+  /// else is done by the first. Light
+  /// that is gathered and patch BRDFs are not shared: see `check_sharing`.
+  BuiltJob(const Job& job, const Plan& plan, const std::vector<Device*>& devices, int frame,
+           TraceRows trace = {});
 
   /// Goes on to another frame: camera and lights move, surfaces that change are made again, and nothing else.
   void go_to(int frame);
@@ -86,7 +91,8 @@ class BuiltJob {
 
   const Job& job_;
   const Plan& plan_;
-  Device& device_;
+  std::vector<Device*> devices_;  // those that share densities
+  Device& device_;                // the first
   /// Of all frames, and of the present one; for methods that choose, while evaluators are built.
   std::optional<SomeQueries> of_all_frames_, of_frame_;
   std::vector<TracedRows> traced_;  ///< of these, blocks of this frame that are yet to be asked for

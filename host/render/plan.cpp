@@ -246,6 +246,15 @@ Plan make_plan(const Job& job) {
   return plan;
 }
 
+void check_sharing(const Plan& plan, std::size_t devices) {
+  const bool has_brdf = std::any_of(plan.evaluators.begin(), plan.evaluators.end(),
+                                    [](const PlannedEvaluator& planned) { return planned.patch_brdf; });
+  if (devices > 1 && (plan.gathers_light || has_brdf))
+    throw UsageError(fmt::format(
+        "{} devices: only densities of lamps are shared among several, and this job {}; expected one device",
+        devices, plan.gathers_light ? "gathers light from all around" : "has a patch BRDF"));
+}
+
 std::string describe(const Plan& plan) {
   std::string text;
   for (const PlannedEvaluator& e : plan.evaluators) {

@@ -56,6 +56,9 @@ bool has_no_limit(const PlannedEvaluator& planned);
 /// glints without a map, of which each size sees its own.
 bool can_audit_pixels(const Plan& plan);
 
+/// Throws UsageError when several devices are no help: where light is gathered, and of patch BRDFs.
+void check_sharing(const Plan& plan, std::size_t devices);
+
 /// The plan in words, a line an item.
 std::string describe(const Plan& plan);
 

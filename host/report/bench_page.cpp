@@ -6,6 +6,7 @@
 #include "host/report/bench_report.h"
 #include "host/report/chart.h"
 #include "host/report/page_images.h"
+#include "host/report/tolerance_curves.h"
 #include "mica/version.h"
 
 namespace mica::host {
@@ -330,11 +331,13 @@ std::string bench_page(const bench::Results& results) {
       paragraph(
           "Each mark is an evaluator; right is faster, lower is closer. The grey band is the Pareto front: "
           "nothing measured is both faster and closer than what lies on it. Numbers beside a mark are the "
-          "elements a texel and axis of a mixture. Rest the pointer on a mark for its numbers.") +
+          "elements a texel and axis of a mixture, or the tolerance asked for. Rest the pointer on a mark "
+          "for its numbers.") +
       draw_legend(evaluators_of(results)) + "<div class=\"row\">";
   for (const Cell& cell : results.cells) html += scatter(cell);
-  html += "</div>\n" + cost_against_footprint(results) + cost_against_map(results) + memory(results) +
-          thumbnails(results) + pictures(results) + table(results);
+  html += "</div>\n" + tolerance_charts(results) + cost_against_footprint(results) +
+          cost_against_map(results) + memory(results) + thumbnails(results) + pictures(results) +
+          table(results);
   return html + "</body></html>\n";
 }
 

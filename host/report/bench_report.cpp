@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "host/report/tolerance_curves.h"
 #include "mica/version.h"
 
 namespace mica::host {
@@ -61,6 +62,18 @@ ordered_json to_json(const std::vector<Cell>& cells) {
   return list;
 }
 
+/// By the cell's place in the list, and the evaluator.
+ordered_json to_json(const ToleranceCurve& curve, const std::vector<Cell>& cells) {
+  ordered_json points = ordered_json::array();
+  for (const ToleranceCurve::Point& point : curve.points)
+    points.push_back({{"tolerance", share(point.measured->tolerance > 0 ? point.measured->tolerance : -1)},
+                      {"speed_over_exact", point.speed_ratio},
+                      {"relative_l2", point.measured->errors.relative_l2}});
+  return {{"cell", curve.cell - cells.data()},
+          {"evaluator", curve.points[0].measured->evaluator},
+          {"points", points}};
+}
+
 ordered_json to_json(const Picture& picture) {
   return {{"label", picture.label},
           {"seconds", picture.seconds},
@@ -83,6 +96,9 @@ std::string bench_json(const bench::Results& results) {
       {"bandwidth_bytes_per_second", results.bandwidth},
       {"cells", to_json(results.cells)},
       {"map_sizes", to_json(results.map_sizes)}};
+  json["tolerance_curves"] = ordered_json::array();
+  for (const ToleranceCurve& curve : tolerance_curves(results))
+    json["tolerance_curves"].push_back(to_json(curve, results.cells));
   for (const bench::GridPoint& point : results.grid)
     json["grid"].push_back({{"cells_a_footprint", point.cells_a_footprint},
                             {"queries_per_second", to_json(point.speed)},
@@ -118,7 +134,7 @@ std::string bench_summary(const bench::Results& results) {
                             m.share_of_peak < 0 ? "-" : fmt::format("{:.1f}%", 100 * m.share_of_peak));
     }
   }
-  return text;
+  return text + tolerance_summary(results);
 }
 
 }  // namespace mica::host

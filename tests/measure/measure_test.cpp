@@ -30,8 +30,16 @@ TEST(Contenders, AreAllOfTheRegistry) {
     const auto count =
         std::count_if(all.begin(), all.end(), [&](const Contender& c) { return c.evaluator == name; });
     const bool mixture = name == "gaussians" || name == "beckmanns";
-    EXPECT_EQ(count, mixture ? 2 : name == "triangles" ? 3 : 1) << name;  // precisions of triangles
+    EXPECT_EQ(count, mixture ? 2 : name == "triangles" ? 6 : 1) << name;  // precisions of triangles
   }
+}
+
+/// In pictures, of precisions only the exact one and that of jobs.
+TEST(Contenders, LeaveCurvesOut) {
+  std::vector<std::string> knobs;
+  for (const Contender& contender : without_curves(contenders(MethodRegistry::builtin(), {1})))
+    if (contender.evaluator == "triangles") knobs.push_back(contender.knob);
+  EXPECT_EQ(knobs, (std::vector<std::string>{"", "0.01"}));
 }
 
 /// The mean of 400 estimates is the density, within four of its standard errors, and the spread is that of

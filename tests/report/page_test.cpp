@@ -8,6 +8,7 @@
 #include "host/report/bench_report.h"
 #include "host/report/chart.h"
 #include "host/report/page_images.h"
+#include "host/report/tolerance_curves.h"
 
 namespace mica::host::page_test {
 namespace {
@@ -76,6 +77,41 @@ TEST(Chart, TakesNoPointsAtAll) {
   EXPECT_TRUE(unbalanced(draw(Chart{})).empty());
 }
 
+bench::Measurement measured(const char* evaluator, const char* knob, double tolerance, double speed,
+                            double error) {
+  bench::Measurement m;
+  m.evaluator = m.label = evaluator, m.knob = knob, m.tolerance = tolerance;
+  m.speed.median = speed, m.errors.relative_l2 = error;
+  return m;
+}
+
+/// By tolerance, over the evaluator's own speed; without evaluators that have no tolerances, what was
+/// refused, and other evaluators' knobs.
+TEST(ToleranceCurves, AreRatiosToExactAnswersOfTheSameCell) {
+  bench::Results results;
+  bench::Cell cell{"flat", 64, 8, 0.01, 1, {}};
+  cell.measurements = {measured("a", "", 0, 200, 1e-6),          measured("a", "0.01", 0.01, 700, 8e-3),
+                       measured("a", "0.001", 0.001, 300, 7e-4), measured("a", "0.1", 0.1, 900, 0.09),
+                       measured("b", "", 0, 50, 1e-6),           measured("b", "2", 0, 60, 1e-6)};
+  cell.measurements[3].refused = "for the test";
+  results.cells = {{"other", 64, 8, 0.01, 1, {}}, cell};
+  const std::vector<ToleranceCurve> curves = tolerance_curves(results);
+  ASSERT_EQ(curves.size(), 1u);
+  EXPECT_EQ(curves[0].cell, &results.cells[1]);
+  std::vector<double> tolerances, ratios;
+  for (const ToleranceCurve::Point& point : curves[0].points)
+    tolerances.push_back(point.measured->tolerance), ratios.push_back(point.speed_ratio);
+  EXPECT_EQ(tolerances, (std::vector<double>{0, 0.001, 0.01}));
+  EXPECT_EQ(ratios, (std::vector<double>{1, 1.5, 3.5}));
+  const std::string charts = tolerance_charts(results);
+  EXPECT_TRUE(unbalanced(charts).empty());
+  EXPECT_EQ(count_of(charts, "<svg"), 1u);
+  EXPECT_EQ(count_of(charts, "3.50 times the speed"), 1u);
+  EXPECT_EQ(count_of(tolerance_summary(results), "0.01: 3.50x 8.0e-03"), 1u);
+  results.cells.pop_back();
+  EXPECT_EQ(tolerance_charts(results) + tolerance_summary(results), "");
+}
+
 /// The smallest suite, from the device to the page.
 TEST(BenchPage, StandsByItself) {
   Device device(0);
@@ -106,6 +142,15 @@ TEST(BenchPage, StandsByItself) {
     const nlohmann::json& triangles = cell.at("measurements").at(0);
     EXPECT_EQ(triangles.at("evaluator"), "triangles");
     EXPECT_LT(triangles.at("errors").at("relative_l2"), 1e-4);
+  }
+  ASSERT_EQ(json.at("tolerance_curves").size(), json.at("cells").size());
+  for (const nlohmann::json& curve : json.at("tolerance_curves")) {
+    std::vector<double> tolerances;
+    for (const nlohmann::json& point : curve.at("points"))
+      if (!point.at("tolerance").is_null()) tolerances.push_back(point.at("tolerance"));
+    EXPECT_EQ(tolerances, (std::vector<double>{3e-4, 1e-3, 3e-3, 1e-2, 3e-2}));
+    EXPECT_LT(curve.at("points").at(0).at("relative_l2"), 1e-4);
+    EXPECT_GT(curve.at("points").at(5).at("relative_l2"), 1e-4) << "as if nothing had been left out";
   }
   EXPECT_LT(json.at("pictures").at(0).at("evaluator").at("relative_mse"), 1e-8);
   EXPECT_GT(json.at("pictures").at(0).at("equal_time").at("relative_mse"), 1e-6);

@@ -62,7 +62,7 @@ class TrianglesMethod : public Method {
   std::vector<MethodVariant> variants(const std::vector<int>&) const override {
     std::vector<MethodVariant> all;
     all.push_back({settings(), name(), ""});
-    for (const double tolerance : {1e-3, 1e-2}) {
+    for (const double tolerance : {3e-4, 1e-3, 3e-3, 1e-2, kRoughTriangles}) {
       std::unique_ptr<MethodSettings> less = settings();
       less->tolerance = tolerance;
       all.push_back(
@@ -71,10 +71,12 @@ class TrianglesMethod : public Method {
     return all;
   }
 
-  OperationCounter counter(Device* device, const Surface* surface, const MethodSettings&) const override {
-    TriangleSettings settings;
-    settings.count_flops = true;
-    return {std::make_unique<TriangleEvaluator>(*device, *surface, settings), 1};
+  OperationCounter counter(Device* device, const Surface* surface,
+                           const MethodSettings& settings) const override {
+    TriangleSettings own;
+    own.tolerance = tolerance_of(settings);
+    own.count_flops = true;
+    return {std::make_unique<TriangleEvaluator>(*device, *surface, own), 1};
   }
 };
 
