@@ -12,7 +12,7 @@ namespace mica::host {
 namespace {
 
 constexpr std::uint64_t kFrames = ~std::uint64_t{0};  // a stream that no pixel has
-constexpr std::uint64_t kWholePixel = 0xffffffffu;        // a stream that no subpixel has
+constexpr std::uint64_t kWholePixel = 0xffffffffu;    // a stream that no subpixel has
 
 /// The draws of normals of a BRDF that has them, or null.
 const NormalDraws* normal_draws(const PatchBrdf& brdf) {
