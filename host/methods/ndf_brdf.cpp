@@ -63,11 +63,16 @@ Eigen::Matrix2d NdfBrdf::lobe_moments(double roughness) const {
   return slope_moments_ + roughness * roughness * Eigen::Matrix2d::Identity();
 }
 
+double NdfBrdf::masking(const BrdfQuery& query) const {
+  return smith_masking_shadowing(query.view.z(), query.light.z(),
+                                 std::sqrt(lobe_moments(query.roughness).trace()));
+}
+
 BrdfValue NdfBrdf::value(const BrdfQuery& query, double density) const {
   if (!above_horizon(query.view, query.light)) return {};
   const Eigen::Vector3d half = half_vector(query.view, query.light);
   const Eigen::Matrix2d moments = lobe_moments(query.roughness);
-  const double G = smith_masking_shadowing(query.view.z(), query.light.z(), std::sqrt(moments.trace()));
+  const double G = masking(query);
   const double per_normal = 1 / (4 * std::max(query.view.dot(half), 1e-12));  // d half / d light
   const double pdf = normal_share_ * density * half.z() * per_normal +
                      lobe_share_ * VisibleNormals(moments).pdf(query.view, half) +
@@ -90,16 +95,16 @@ std::vector<BrdfValue> NdfBrdf::evaluate(const std::vector<BrdfQuery>& queries) 
   return values;
 }
 
-Eigen::Vector3d NdfBrdf::surface_normal(const SampleQuery& query) const {
-  const Footprint& footprint = query.from.footprint;
-  const Eigen::Vector2d normal_pair = gaussian_pair(random(query, kPositionX), random(query, kPositionY));
+/// Zero where the roughness takes it out of the disk.
+Eigen::Vector3d NdfBrdf::surface_normal(const ViewQuery& from, const Eigen::Vector4d& uniform) const {
+  const Footprint& footprint = from.footprint;
+  const Eigen::Vector2d normal_pair = gaussian_pair(uniform[0], uniform[1]);
   const Eigen::Matrix2d root = footprint.cov_uv.llt().matrixL();
   Eigen::Vector2d uv = footprint.mean_uv + root * normal_pair;
   uv -= uv.array().floor().matrix();
   const Eigen::Vector2d position = uv.cwiseProduct(Eigen::Vector2d(surface_.width(), surface_.height()));
   const Eigen::Vector2d s =
-      normal_at(surface_, position) +
-      query.from.roughness * gaussian_pair(random(query, kDirectionX), random(query, kDirectionY));
+      normal_at(surface_, position) + from.roughness * gaussian_pair(uniform[2], uniform[3]);
   const double rest = 1 - s.squaredNorm();
   return rest > 0 ? Eigen::Vector3d(s.x(), s.y(), std::sqrt(rest)) : Eigen::Vector3d::Zero();
 }
@@ -114,7 +119,8 @@ Eigen::Vector3d NdfBrdf::draw(const SampleQuery& query) const {
       choice < cosine_share_ + lobe_share_
           ? VisibleNormals(lobe_moments(query.from.roughness))
                 .sample(view, {random(query, kDirectionX), random(query, kDirectionY)})
-          : surface_normal(query);
+          : surface_normal(query.from, {random(query, kPositionX), random(query, kPositionY),
+                                        random(query, kDirectionX), random(query, kDirectionY)});
   if (half.dot(view) <= 0) return -Eigen::Vector3d::UnitZ();  // a normal that turns away
   return (2 * half.dot(view) * half - view).normalized();
 }
@@ -132,6 +138,19 @@ std::vector<BrdfSample> NdfBrdf::sample(const std::vector<SampleQuery>& queries)
     samples[n] = {drawn[n].light.cast<float>(), values[n].pdf, values[n].single / values[n].pdf, 0};
   }
   return samples;
+}
+
+double NdfBrdf::normal_weight(const BrdfQuery& query) const {
+  if (!above_horizon(query.view, query.light)) return 0;
+  const Eigen::Vector3d half = half_vector(query.view, query.light);
+  return masking(query) * std::max(query.view.dot(half), 0.0) / (query.view.z() * std::max(half.z(), 1e-12));
+}
+
+NormalDraws::Drawn NdfBrdf::draw_normal(const ViewQuery& from, const Eigen::Vector4d& uniform) const {
+  const Eigen::Vector3d half = surface_normal(from, uniform);
+  if (from.view.z() < kMinCosine || half.dot(from.view) <= 0) return {-Eigen::Vector3d::UnitZ(), 0};
+  const Eigen::Vector3d light = (2 * half.dot(from.view) * half - from.view).normalized();
+  return {light, normal_weight({from.footprint, from.view, light, from.roughness})};
 }
 
 std::vector<Albedo> NdfBrdf::energy(const std::vector<ViewQuery>& queries) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "host/methods/evaluator.h"
+#include "host/methods/normal_draws.h"
 #include "host/methods/patch_brdf.h"
 #include "host/surface/surface.h"
 
@@ -16,7 +17,7 @@ namespace mica::host {
 /// Directions are drawn from a mixture of which the density is known exactly: the visible normals of a smooth
 /// lobe with the moments of the whole map, a cosine lobe and, where D is the density of the surface's own
 /// normals, a normal of the surface at a point of the footprint, blurred by the roughness [Yan14 sec. 6].
-class NdfBrdf : public PatchBrdf {
+class NdfBrdf : public PatchBrdf, public NormalDraws {
  public:
   enum class Draws {
     surface_normals,  ///< the evaluator answers [Yan14] Eq. 6 of `surface`, and nothing else
@@ -33,6 +34,12 @@ class NdfBrdf : public PatchBrdf {
 
   std::vector<BrdfSample> sample(const std::vector<SampleQuery>& queries) override;
 
+  Drawn draw_normal(const ViewQuery& from, const Eigen::Vector4d& uniform) const override;
+  double normal_weight(const BrdfQuery& query) const override;
+
+  /// Itself where D is the density of the surface's own normals, otherwise none.
+  const NormalDraws* normal_draws() const { return normal_share_ > 0 ? this : nullptr; }
+
   std::string name() const override { return evaluator_.name(); }
   std::size_t device_bytes() const override { return 0; }  // the evaluator's are its own
   double build_seconds() const override { return 0; }
@@ -40,7 +47,8 @@ class NdfBrdf : public PatchBrdf {
 
  private:
   Eigen::Vector3d draw(const SampleQuery& query) const;
-  Eigen::Vector3d surface_normal(const SampleQuery& query) const;
+  Eigen::Vector3d surface_normal(const ViewQuery& from, const Eigen::Vector4d& uniform) const;
+  double masking(const BrdfQuery& query) const;
   BrdfValue value(const BrdfQuery& query, double density) const;
   Eigen::Matrix2d lobe_moments(double roughness) const;
 

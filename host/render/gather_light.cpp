@@ -5,12 +5,20 @@
 #include <algorithm>
 
 #include "host/base/random.h"
+#include "host/methods/ndf_brdf.h"
 #include "host/render/gathered_light.h"
 
 namespace mica::host {
 namespace {
 
 constexpr std::uint64_t kFrames = ~std::uint64_t{0};  // a stream that no pixel has
+constexpr std::uint64_t kWholePixel = 0xffffffffu;    // a stream that no subpixel has
+
+/// The draws of normals of a BRDF that has them, or null.
+const NormalDraws* normal_draws(const PatchBrdf& brdf) {
+  const auto* ndf_brdf = dynamic_cast<const NdfBrdf*>(&brdf);
+  return ndf_brdf ? ndf_brdf->normal_draws() : nullptr;
+}
 
 /// Asks one BRDF about all draws of its points, and lets it draw. @return how many questions that were.
 std::size_t ask(PatchBrdf& brdf, int samples, bool draws, const std::vector<GatheredLight*>& points) {
@@ -21,7 +29,7 @@ std::size_t ask(PatchBrdf& brdf, int samples, bool draws, const std::vector<Gath
   std::size_t next = 0;
   for (GatheredLight* point : points)
     for (const LightDraw& draw : point->draws()) point->add(draw, values[next++]);
-  if (!draws) return queries.size();
+  if (!draws || normal_draws(brdf)) return queries.size();
 
   const auto samples_a_point = static_cast<std::size_t>(samples);
   std::vector<SampleQuery> sample_queries(points.size() * samples_a_point);
@@ -48,12 +56,18 @@ std::size_t gather(const BuiltJob& built, const TracedRows& rows, std::size_t fi
   const ImageSettings& image = built.job().image;
   const GatheringContext context{built.scene(), image, built.plan().techniques};
   const std::uint64_t seed = seed_of(built);
+  std::vector<const NormalDraws*> normals;
+  for (std::size_t n = 0; n < built.plan().evaluators.size(); ++n)
+    normals.push_back(normal_draws(built.brdf(n)));
   std::vector<GatheredLight> points;
   points.reserve(last - first);
   for (std::size_t n = first; n < last; ++n) {
     const LitPoint& point = rows.points[n];
-    const std::uint64_t stream = point.subpixel + (std::uint64_t{point.process} << 32);
-    points.emplace_back(context, point, random_bits(seed, point.key, stream));
+    const std::uint64_t process = std::uint64_t{point.process} << 32;
+    const GatheringKeys keys{random_bits(seed, point.key, kWholePixel + process),
+                             random_bits(seed, point.key, point.subpixel + process)};
+    const auto evaluator = static_cast<std::size_t>(built.plan().evaluator_of_material[point.material]);
+    points.emplace_back(context, point, normals[evaluator], keys);
   }
   tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t n) { points[n].draw(); });
 

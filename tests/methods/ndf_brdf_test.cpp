@@ -105,6 +105,34 @@ TEST_P(NdfBrdfTest, WeightsAreTheValueOverTheDensity) {
   EXPECT_GT(drawn_at_all, 350);
 }
 
+TEST_P(NdfBrdfTest, NormalsDrawnWithoutTheirDensityWeighAsItDoes) {
+  const NormalDraws* normals = brdf_.normal_draws();
+  EXPECT_EQ(normals != nullptr, GetParam() == NdfBrdf::Draws::surface_normals);
+  if (!normals) return;
+  // What a patch reflects of a sky of two halves and a slope, by draws that ask for D and by those that do
+  // not.
+  const auto sky = [](const Eigen::Vector3d& light) { return (light.x() > 0.1 ? 3 : 1) + light.z(); };
+  for (const double cos_view : {0.95, 0.4}) {
+    look_at(cos_view);
+    constexpr int count = 40000;
+    double sums[2] = {0, 0}, squares[2] = {0, 0};
+    const auto add = [&](int which, double value) {
+      sums[which] += value / count, squares[which] += value * value / count;
+    };
+    for (const BrdfSample& sample : draw(count))
+      add(0, sample.weight_single * sky(sample.light.cast<double>()));
+    for (std::uint64_t n = 0; n < count; ++n) {
+      const auto uniform = [&](std::uint64_t stream) { return random_unit(5, stream, n); };
+      const NormalDraws::Drawn drawn =
+          normals->draw_normal(from_, {uniform(0), uniform(1), uniform(2), uniform(3)});
+      add(1, drawn.weight * sky(drawn.light));
+    }
+    const double error = std::sqrt((squares[0] - sums[0] * sums[0] + squares[1] - sums[1] * sums[1]) / count);
+    EXPECT_NEAR(sums[1], sums[0], 4.5 * error) << cos_view;
+    EXPECT_LT(error, 0.02 * sums[0]) << "too noisy to tell";
+  }
+}
+
 TEST_P(NdfBrdfTest, HorizonsAreFinite) {
   for (const double z : {1e-7, 1e-5, 1e-3}) {
     look_at(z);

@@ -127,15 +127,47 @@ Color flat_radiance(const Eigen::Vector3d& o, double r) {
   return sum * 2 * kPi / (2.0 * steps * steps);
 }
 
+TEST(GatherLight, DrawsOfAPixelAreEvenTogether) {
+  const std::string sky =
+      environment([](const Eigen::Vector3d& d) { return Color::Constant(1 + 2 * std::acos(d.z())); });
+  const auto error = [&](int subpixels, int samples) {
+    std::string job = plane_job(kChalk, sky, 2, "samples = " + std::to_string(samples));
+    std::ifstream file(job);
+    std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+    text.replace(text.find("subpixels = 1"), 13, "subpixels = " + std::to_string(subpixels));
+    std::ofstream(job) << text;
+    return mean_of(render_job(job, Techniques::both), 0).error;
+  };
+  // 64 draws apart would have an eighth of the error of one.
+  EXPECT_LT(error(8, 1), error(1, 1) / 8 / 2);
+}
+
+TEST(GatherLight, AFurnaceAsksForNoDensityOfNormals) {
+  const std::string material =
+      "surface = \"noise\"\nroughness = 0.1\nrepeat = [40, 40]\nndf = \"triangles\"\n";
+  const Job job = load_job(plane_job(material, kFurnace, 40, "samples = 16"), {});
+  Plan plan = make_plan(job);
+  Device device(0);
+  const auto asked = [&] { return render(job, plan, device, [](int, int) {}).queries; };
+  EXPECT_EQ(asked(), 0u);
+  plan.techniques = Techniques::lights;
+  EXPECT_GT(asked(), 0u);
+}
+
 TEST(GatherLight, GlossyPlaneReflectsTheSky) {
   const std::string sky = environment(lamp_sky);
   for (const double roughness : {0.1, 0.4}) {
-    const std::string material = "surface = \"flat\"\nroughness = " + std::to_string(roughness);
+    // Not `auto`, whose answers may be off by the picture's tolerance; draws of normals are not.
+    const std::string material =
+        "surface = \"flat\"\nndf = \"triangles\"\nroughness = " + std::to_string(roughness);
     const std::string job = plane_job(material, sky, 0.05, "samples = 64");
     const Color expected = flat_radiance(Eigen::Vector3d(0, -3, 2).normalized(), roughness);
     // Pixels of 2.8 degrees, linear between their centres, flatten a lamp of 7 degrees by 0.3% at most.
-    for (const Techniques techniques : {Techniques::both, Techniques::lights, Techniques::brdf})
+    for (const Techniques techniques : {Techniques::both, Techniques::lights, Techniques::brdf}) {
+      SCOPED_TRACE(std::to_string(roughness) + ", techniques " +
+                   std::to_string(static_cast<int>(techniques)));
       expect_mean(render_job(job, techniques), expected, 3e-3);
+    }
   }
 }
 

@@ -74,6 +74,23 @@ TEST(LowDiscrepancy, EveryBoxOfEqualAreaGetsOnePoint) {
     }
 }
 
+TEST_F(EnvironmentTest, PointsOfFourDimensionsAreANet) {
+  // Of 2^m points 8 fall into each box of volume 2^(3 - m): t = 0 + 0 + 1 + 2, the polynomials' degrees
+  // less 1.
+  for (int code = 0; code < 256; ++code) {
+    const int logs[] = {code & 3, (code >> 2) & 3, (code >> 4) & 3, code >> 6};
+    if (logs[0] + logs[1] + logs[2] + logs[3] != 3) continue;
+    std::vector<int> count(8, 0);
+    for (std::uint32_t n = 128; n < 192; ++n) {
+      const Eigen::Vector4d p = low_discrepancy_point4(n, 0x123456789abcdef0u, 0xfedcba9876543210u);
+      int box = 0;
+      for (int k = 0; k < 4; ++k) box = (box << logs[k]) + static_cast<int>(p[k] * (1 << logs[k]));
+      ++count[static_cast<std::size_t>(box)];
+    }
+    EXPECT_EQ(count, std::vector<int>(8, 8)) << code;
+  }
+}
+
 TEST_F(EnvironmentTest, DensityIsOneInAllAndNowhereZeroWhereLightIs) {
   const Environment environment({{lamp(), {2, 2, 2}, 45}});  // two pixels
   double sum = 0;
