@@ -8,6 +8,7 @@
 #include "host/render/built_job.h"
 #include "host/render/gather_light.h"
 #include "host/render/own_samples.h"
+#include "host/render/pending_block.h"
 
 namespace mica::host {
 namespace {

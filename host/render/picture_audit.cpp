@@ -10,6 +10,7 @@
 #include "host/methods/auto/sampled_error.h"
 #include "host/render/film.h"
 #include "host/render/luminance.h"
+#include "host/render/pending_block.h"
 
 namespace mica::host {
 namespace {

@@ -7,6 +7,7 @@
 #include "host/render/film.h"
 #include "host/render/gather_light.h"
 #include "host/render/luminance.h"
+#include "host/render/pending_block.h"
 
 namespace mica::host {
 namespace {

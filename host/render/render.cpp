@@ -12,6 +12,7 @@
 #include "host/render/film.h"
 #include "host/render/gather_light.h"
 #include "host/render/luminance.h"
+#include "host/render/pending_block.h"
 #include "host/render/refinement.h"
 #include "mica/version.h"
 
