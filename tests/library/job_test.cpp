@@ -18,7 +18,7 @@ const char* const kJob = R"(
 
 TEST(LibraryJob, RendersToNamedChannels) {
   const Job job = Job::parse(kJob);
-  EXPECT_NE(job.plan().find("triangles"), std::string::npos);
+  EXPECT_NE(job.plan().find("auto on surface bumps"), std::string::npos);
   const Renderer renderer(Device(), job);
   std::size_t rows = 0;
   RunControl control;
