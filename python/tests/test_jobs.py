@@ -8,7 +8,7 @@ def test_a_dict_is_a_job(job):
     made = mica.Job(job)
     assert (made.width, made.height) == (24, 16)
     assert list(made.frames) == [0]
-    assert "triangles" in made.plan()
+    assert "auto on surface bumps" in made.plan()
     assert repr(made) == "Job(24 x 16 pixels)"
 
 
