@@ -81,7 +81,7 @@ def buffer(layer):
 
 def material(surface, folder):
     return (f'surface.bumps = {{ file = "{folder}/{surface}.exr", encoding = "unorm" }}\n'
-            'material.a = { surface = "bumps", repeat = [4, 2], roughness = 0.1, id = 1 }\n')
+            'material.a = { surface = "bumps", ndf = "triangles", repeat = [4, 2], roughness = 0.1, id = 1 }\n')
 
 
 def run(*arguments):
