@@ -356,7 +356,8 @@ Eigen::Matrix2d BufferBlock::turn_at(int row, int column, std::size_t lamp, cons
   const Eigen::Matrix2d change =
       (on_plane + of_normal.value()) * gradient.duv.inverse() * repeat_inverse * point.duv;
   const double least = kLeastTurn * point.lamps[lamp].seen.roughness / sigma_pixels_;
-  return change.norm() > least ? turn_over(point.duv, change) : Eigen::Matrix2d(Eigen::Matrix2d::Zero());
+  return change.norm() > least ? turn_over(point.duv, change, sigma_pixels_)
+                               : Eigen::Matrix2d(Eigen::Matrix2d::Zero());
 }
 
 void BufferBlock::cover() {

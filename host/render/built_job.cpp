@@ -257,6 +257,7 @@ PixelSettings BuiltJob::pixels() const {
     pixels.takes_first_order.push_back(takes);
     pixels.fits = pixels.fits || (may_fit && takes);
   }
+  pixels.asks_hidden = pixels.fits && pixels.subpixels > 1;  // where pixels are refined
   return pixels;
 }
 

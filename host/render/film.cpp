@@ -63,11 +63,11 @@ std::vector<double> pixel_errors(const TracedRows& rows, const std::vector<float
   for (std::size_t n = 0; n < densities.size(); ++n) {
     const GlintQuery& glint = rows.queries[n];
     if (glint.pixel == GlintQuery::kNone) continue;
-    const double weight =
-        luminance(glint.weight.cast<double>()) * (glint.sample == GlintQuery::kNone ? 1 : of_a_sample);
+    const bool is_sample = glint.sample != GlintQuery::kNone;  // the doubt has what its footprint leaves out
+    const double weight = luminance(glint.weight.cast<double>()) * (is_sample ? of_a_sample : 1);
     of_densities[glint.pixel] += weight * static_cast<double>(errors[n]);
-    const double missed =
-        std::hypot(static_cast<double>(glint.missed_by_footprint), static_cast<double>(glint.missed_by_lamp));
+    const double missed = std::hypot(is_sample ? 0 : static_cast<double>(glint.missed_by_footprint),
+                                     static_cast<double>(glint.missed_by_lamp));
     squares[glint.pixel] += std::pow(weight * static_cast<double>(densities[n]) * missed, 2);
   }
   for (std::size_t pixel = 0; pixel < squares.size(); ++pixel)

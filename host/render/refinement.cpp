@@ -16,17 +16,17 @@ constexpr std::uint64_t kLooks = 0x6c6f6f6b;  // a stream of random numbers
 constexpr int kLooksAlong = 16;               // rows that are looked at, and pixels of each
 constexpr int kLookSubpixels = 2;             // of those pixels
 constexpr std::size_t kFewQueries = 1024;
-constexpr int kFinestBy = 4;  // along each axis
+constexpr int kFinestBy = 8;  // along each axis
 /// Of the root mean square of a picture and its tolerance: a change of a pixel that may stay, in a picture
 /// 160 pixels wide. The pixels that need samples lie along lines: the wider a picture is the fewer they are.
-constexpr double kChangeOfTolerance = 4, kWidth = 160;
+constexpr double kChangeOfTolerance = 2, kWidth = 160;
 /// How much less than their doubt pixels change: a third of it, root mean square, where it was measured.
 constexpr double kChangeOfDoubt = 1.0 / 3;
 /// Of a change by samples twice as dense: how much more four times as dense ones would change.
 constexpr double kChangeOfHalf = 0.5;
 /// Of the change of a pixel that may stay, what a sample's may be: a dozen of them lie along an edge, and the
 /// truth of each is somewhere between itself and the sample across the edge.
-constexpr double kUnevenOfChange = 0.02;
+constexpr double kUnevenOfChange = 0.1;
 
 using Colors = std::vector<Eigen::Vector3d>;
 
@@ -38,13 +38,25 @@ struct Asked {
 struct Samples {
   Lattice lattice;
   Colors radiance;
+  std::vector<double> hidden;  ///< luminance of what shadows hide from them
+  std::vector<double> missed;  ///< relative L2 of what their footprints leave out
+
+  /// What a sample's luminance may be off by for what lies in its footprint: an edge of a shadow, or a
+  /// surface that turns away from the eye.
+  /// @param expected what such samples show on an average: a glint that it misses has more.
+  double unsure(std::size_t sample, double expected) const {
+    return std::max(hidden[sample], missed[sample] * std::max(expected, luminance(radiance[sample])));
+  }
 
   /// Sample (i, j) of those that a pixel sees, from the first one of the first pixel within reach.
   const Eigen::Vector3d& at(int row, int column, std::size_t i, std::size_t j) const {
+    return radiance[place(row, column, i, j)];
+  }
+  std::size_t place(int row, int column, std::size_t i, std::size_t j) const {
     const auto n = static_cast<std::size_t>(lattice.subpixels);
     const int down = static_cast<int>(j / n) - lattice.margin,
               right = static_cast<int>(i / n) - lattice.margin;
-    return radiance[lattice.first_sample[lattice.cell(row + down, column + right)] + j % n * n + i % n];
+    return lattice.first_sample[lattice.cell(row + down, column + right)] + j % n * n + i % n;
   }
   Eigen::Vector3d sum(int row, int column) const {
     Eigen::Vector3d color = Eigen::Vector3d::Zero();
@@ -53,6 +65,24 @@ struct Samples {
     return color;
   }
 };
+
+/// What shadows hide from samples, a luminance each.
+std::vector<double> hidden_of(const TracedRows& rows, const std::vector<float>& densities) {
+  std::vector<double> hidden(rows.sample_radiance.size(), 0.0);
+  for (std::size_t n = 0; n < densities.size(); ++n)
+    if (const GlintQuery& glint = rows.queries[n]; glint.hidden_weight > 0)
+      hidden[glint.sample] += static_cast<double>(glint.hidden_weight) * static_cast<double>(densities[n]);
+  return hidden;
+}
+
+/// The most that footprints leave out of samples, over lamps.
+std::vector<double> missed_of(const TracedRows& rows) {
+  std::vector<double> missed(rows.sample_radiance.size(), 0.0);
+  for (const GlintQuery& glint : rows.queries)
+    if (glint.sample != GlintQuery::kNone)
+      missed[glint.sample] = std::max(missed[glint.sample], static_cast<double>(glint.missed_by_footprint));
+  return missed;
+}
 
 /// Densities of all queries of rows, few at a time: the device has a block of rows in flight besides. Tints
 /// the weights of glints.
@@ -80,7 +110,8 @@ Samples sample(const BuiltJob& built, int first_row, int row_count, const Lattic
   asked->queries += rows.queries.size() + add_lit_brdfs(built, &rows);
   const std::vector<float> densities = densities_of(built, &rows, queries_at_a_time, &asked->dropped);
   FilmRepairs repairs;  // what is black for that reason was so before
-  return {rows.lattice, sample_radiance_of(rows, densities, &repairs)};
+  return {rows.lattice, sample_radiance_of(rows, densities, &repairs), hidden_of(rows, densities),
+          missed_of(rows)};
 }
 
 /// Mean square of luminance, by a few pixels all over the picture.
@@ -92,7 +123,7 @@ double mean_square(const BuiltJob& built) {
     return std::min(static_cast<int>(unit * of), of - 1);
   };
   PixelSettings pixels = built.scene().pixels();
-  pixels.fits = pixels.turns = false;
+  pixels.fits = pixels.turns = pixels.asks_hidden = false;
   pixels.filter = PixelFilter({});  // of the pixel alone
   pixels.subpixels = kLookSubpixels;
   double sum = 0;
@@ -125,20 +156,23 @@ std::vector<bool> pixels_with_limit(const BuiltJob& built, const TracedRows& row
 }
 
 /// How far a pixel's sum over its samples may be off: what it would change by if every other row of them,
-/// every other column, or every other sample counted twice and the rest not at all.
+/// every other column, or every other sample counted twice and the rest not at all, and what each is unsure
+/// of.
 double doubt(const Samples& samples, int row, int column) {
+  const double expected = luminance(samples.sum(row, column));
   const std::vector<double>& weights = samples.lattice.filter.weights;
-  double rows = 0, columns = 0, both = 0;
+  double rows = 0, columns = 0, both = 0, unsure = 0;
   for (std::size_t j = 0; j < weights.size(); ++j)
     for (std::size_t i = 0; i < weights.size(); ++i) {
       const double weight = weights[j] * weights[i];
       if (!(weight > 0)) continue;
       const double part = weight * luminance(samples.at(row, column, i, j));
+      unsure += std::pow(weight * samples.unsure(samples.place(row, column, i, j), expected), 2);
       rows += j % 2 == 0 ? part : -part;
       columns += i % 2 == 0 ? part : -part;
       both += (i + j) % 2 == 0 ? part : -part;
     }
-  return std::sqrt(rows * rows + columns * columns + both * both);
+  return std::sqrt(rows * rows + columns * columns + both * both + unsure);
 }
 
 /// Weights by which six samples along an axis, half as far apart, stand for one between the middle two of
@@ -225,15 +259,19 @@ class RefinedPixel {
     });
   }
 
-  /// @return by how much its luminance changed.
+  /// @return by how much its luminance changed, and may be off for what its samples are not sure of.
   double look_at(const Samples& samples) {
     Eigen::Vector3d color = even_;
     each([&](std::size_t i, std::size_t j, double weight) {
       color += weight * samples.at(row_, column_, i, j);
     });
-    const double change = std::abs(luminance(color - shown_));
+    double square = std::pow(luminance(color - shown_), 2);
     shown_ = color;
-    return change;
+    each([&](std::size_t i, std::size_t j, double weight) {
+      const std::size_t place = samples.place(row_, column_, i, j);
+      square += std::pow(weight * samples.unsure(place, luminance(shown_)), 2);
+    });
+    return std::sqrt(square);
   }
 
   std::size_t pixel() const { return pixel_; }
@@ -252,7 +290,7 @@ class RefinedPixel {
   double contrast(const Samples& samples, std::size_t i, std::size_t j) const {
     const std::size_t across = samples.lattice.filter.weights.size();
     const double here = luminance(samples.at(row_, column_, i, j));
-    double most = 0;
+    double most = samples.unsure(samples.place(row_, column_, i, j), luminance(shown_));
     const auto look = [&](std::size_t x, std::size_t y) {
       if (x < across && y < across && weights_[y * across + x] > 0)  // -1 is larger
         most = std::max(most, std::abs(luminance(samples.at(row_, column_, x, y)) - here));
@@ -285,7 +323,8 @@ std::size_t Refinement::refine(TracedRows* rows, const std::vector<float>& densi
   if (!tells_doubts_) return 0;
   Asked asked;
   FilmRepairs repairs;  // the film counts them
-  Samples samples{rows->lattice, sample_radiance_of(*rows, densities, &repairs)};
+  Samples samples{rows->lattice, sample_radiance_of(*rows, densities, &repairs), hidden_of(*rows, densities),
+                  missed_of(*rows)};
   const std::vector<bool> has_limit = pixels_with_limit(built_, *rows);
   std::vector<RefinedPixel> doubtful;
   const auto width = static_cast<std::size_t>(rows->lattice.width);
@@ -299,6 +338,7 @@ std::size_t Refinement::refine(TracedRows* rows, const std::vector<float>& densi
   refined_ += doubtful.size();
   PixelSettings pixels = built_.scene().pixels();
   pixels.fits = false;
+  pixels.asks_hidden = true;
   for (const int finest = kFinestBy * pixels.subpixels; pixels.subpixels < finest;) {
     pixels.subpixels *= 2;
     const Lattice lattice = built_.scene().lattice(pixels);

@@ -50,9 +50,10 @@ Eigen::Matrix2d footprint_covariance(const Eigen::Matrix2d& duv, double sigma_pi
   return bounded;
 }
 
-Eigen::Matrix2d turn_over(const Eigen::Matrix2d& duv, const Eigen::Matrix2d& dh) {
-  constexpr double max_condition = 50, most_turn = 0.5;  // a pixel
-  if (!(std::abs(duv.determinant()) * max_condition > duv.squaredNorm()) || !(dh.norm() < most_turn))
+Eigen::Matrix2d turn_over(const Eigen::Matrix2d& duv, const Eigen::Matrix2d& dh, double sigma_pixels) {
+  constexpr double max_condition = 50, most_turn = 0.25;
+  if (!(std::abs(duv.determinant()) * max_condition > duv.squaredNorm()) ||
+      !(sigma_pixels * dh.norm() < most_turn))
     return Eigen::Matrix2d::Zero();
   return dh * duv.inverse();
 }

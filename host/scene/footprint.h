@@ -23,7 +23,8 @@ Eigen::Matrix2d uv_differentials(const CameraRay& ray, const Hit& hit);
 Eigen::Matrix2d footprint_covariance(const Eigen::Matrix2d& duv, double sigma_pixels);
 
 /// The half vector's change per unit of uv, where it changes by `dh` (a column a pixel to the right and down)
-/// and uv by `duv`; zero where uv hardly change along one direction, or the half vector by too much.
-Eigen::Matrix2d turn_over(const Eigen::Matrix2d& duv, const Eigen::Matrix2d& dh);
+/// and uv by `duv`; zero where uv hardly change along one direction, or the half vector by too much over
+/// `sigma_pixels`.
+Eigen::Matrix2d turn_over(const Eigen::Matrix2d& duv, const Eigen::Matrix2d& dh, double sigma_pixels);
 
 }  // namespace mica::host

@@ -1,5 +1,6 @@
 #include "host/scene/sample_turns.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "host/scene/pixel_fit.h"
@@ -12,7 +13,7 @@ std::optional<Eigen::Matrix2d> half_vector_change(const std::vector<SeenPoint>& 
   const auto is_alike = [&](const SeenPoint& point) {
     return point.hit && point.faces_eye && point.hit->shape == middle.hit->shape &&
            point.hit->part == middle.hit->part && alike(point.lamps, middle.lamps) &&
-           point.lamps[lamp].visible > 0;
+           point.lamps[lamp].is_above;
   };
   const int place[2] = {k % n, k / n}, stride[2] = {1, n};
   Eigen::Matrix2d change;
@@ -37,6 +38,44 @@ std::optional<Eigen::Matrix2d> half_vector_change(const std::vector<SeenPoint>& 
     change.col(axis) = (half_vector(ends[1]) - half_vector(ends[0])) * n / (ends[1] - ends[0]);
   }
   return change;
+}
+
+namespace {
+
+/// Calls visit(point, axis) for those beside point k of a pixel of n x n.
+template <typename Visit>
+void visit_beside(const std::vector<SeenPoint>& points, int n, int k, const Visit& visit) {
+  const int place[2] = {k % n, k / n}, stride[2] = {1, n};
+  for (int axis = 0; axis < 2; ++axis)
+    for (const int step : {-1, 1})
+      if (const int to = place[axis] + step; to >= 0 && to < n)
+        visit(points[static_cast<std::size_t>(k + step * stride[axis])], axis);
+}
+
+}  // namespace
+
+double missed_by_bend(const std::vector<SeenPoint>& points, int n, int k, double sigma_pixels) {
+  const SeenPoint& middle = points[static_cast<std::size_t>(k)];
+  const double cosine = middle.frame.z.dot(middle.to_eye);
+  double most[2] = {0, 0};
+  bool ends = false;
+  visit_beside(points, n, k, [&](const SeenPoint& point, int axis) {
+    if (!point.hit || !point.faces_eye || point.hit->shape != middle.hit->shape ||
+        point.hit->part != middle.hit->part)
+      ends = true;
+    else
+      most[axis] = std::max(most[axis], std::abs(point.frame.z.dot(point.to_eye) - cosine) * n);
+  });
+  return ends ? 1 : std::min(0.5 * sigma_pixels * std::hypot(most[0], most[1]) / cosine, 1.0);
+}
+
+std::vector<bool> lights_beside(const std::vector<SeenPoint>& points, int n, int k, std::size_t lights) {
+  std::vector<bool> seen(lights, false);
+  visit_beside(points, n, k, [&](const SeenPoint& point, int) {
+    for (const SeenLamp& lamp : point.lamps)
+      if (lamp.visible > 0) seen[lamp.light] = true;
+  });
+  return seen;
 }
 
 }  // namespace mica::host

@@ -32,6 +32,9 @@ struct GlintQuery {
   /// Relative L2 of what the footprint stands for, and of the lamp's part as one Gaussian: over glints
   /// anywhere.
   float missed_by_footprint = 0, missed_by_lamp = 0;
+  /// Of a lamp that a shadow hides from the sample: luminance per unit of D if it did not. See
+  /// PixelSettings::asks_hidden.
+  float hidden_weight = 0;
 };
 
 /// What a sample shows of one lamp that needs no P-NDF.
@@ -80,6 +83,10 @@ struct PixelSettings {
   bool turns = true;                    ///< half vectors do, over samples; fits always turn them
   double tolerance = 0.01;              ///< of fits, see FitLimits::relative_l2
   LampParts lamp_parts;
+  /// Samples are asked what lamps would show that a shadow hides from them, but not from one beside them in
+  /// their pixel, and how much bends leave out. These queries weigh nothing: the edge of the shadow may be
+  /// anywhere between a sample and those beside it, and they say what it may hide there.
+  bool asks_hidden = false;
 };
 
 /// What a scene hands out for the lights that are gathered by sampling directions.

@@ -315,8 +315,14 @@ void BlockTracer::sample_cell(int row, int column, std::uint32_t first_sample, R
     if (!point.hit || !is_chosen(row, column, static_cast<int>(k))) continue;
     means.add({wrap(point.uv), footprint_covariance(point.duv, lattice_filter_.sigma_pixels)}, point.frame.z);
     if (!point.faces_eye) continue;
-    viewer.ask(point, lattice_filter_.sigma_pixels,
-               {pixel, sample, key(row, column), static_cast<std::uint32_t>(k)}, turns[k], queries);
+    SamplePlace place{pixel, sample, key(row, column), static_cast<std::uint32_t>(k)};
+    if (pixels_.asks_hidden) {
+      const int here = static_cast<int>(k);
+      place.missed =
+          static_cast<float>(missed_by_bend(points, pixels_.subpixels, here, lattice_filter_.sigma_pixels));
+      place.asked_if_hidden = lights_beside(points, pixels_.subpixels, here, viewer.lights.size());
+    }
+    viewer.ask(point, lattice_filter_.sigma_pixels, place, turns[k], queries);
     for (const SeenLamp& lamp : point.lamps) {
       const std::uint32_t light = wanted.all ? lamp.light : wanted.some[lamp.light];
       if (lamp.visible > 0 && std::binary_search(wanted.some.begin(), wanted.some.end(), light))
@@ -339,7 +345,7 @@ void BlockTracer::own_lamps(int row, int column, std::size_t first_glint, RowQue
   const std::size_t pixel = pixel_of(row, column);
   for (std::size_t n = first_glint; n < queries->glints.size(); ++n) {
     GlintQuery& query = queries->glints[n];
-    if (!std::binary_search(lamps.begin(), lamps.end(), query.light)) continue;
+    if (query.hidden_weight > 0 || !std::binary_search(lamps.begin(), lamps.end(), query.light)) continue;
     query.pixel = static_cast<std::uint32_t>(pixel);
     if (rows_.query_count[pixel] < 65535) ++rows_.query_count[pixel];
   }
@@ -353,11 +359,12 @@ std::vector<std::vector<Eigen::Matrix2d>> BlockTracer::turns_of(const std::vecto
     if (!point.hit || !point.faces_eye || !pixels_.takes_first_order[point.material]) continue;
     turns[k].assign(point.lamps.size(), Eigen::Matrix2d::Zero());
     for (std::size_t lamp = 0; lamp < point.lamps.size(); ++lamp) {
-      if (!pixels_.turns || !(point.lamps[lamp].visible > 0)) continue;
+      if (!pixels_.turns || !point.lamps[lamp].is_above) continue;
       const auto change = half_vector_change(points, pixels_.subpixels, static_cast<int>(k), lamp,
                                              lattice_filter_.sigma_pixels);
       const double least = kLeastTurn * point.lamps[lamp].seen.roughness / lattice_filter_.sigma_pixels;
-      if (change && change->norm() > least) turns[k][lamp] = turn_over(point.duv, *change);
+      if (change && change->norm() > least)
+        turns[k][lamp] = turn_over(point.duv, *change, lattice_filter_.sigma_pixels);
     }
   }
   return turns;

@@ -181,6 +181,7 @@ void Viewer::ask(const SeenPoint& point, double sigma_pixels, const SamplePlace&
   const MaterialDescription& material = shared->materials[point.material];
   GlintQuery query;
   query.pixel = place.pixel, query.sample = place.sample;
+  query.missed_by_footprint = place.missed;
   query.material = point.material;
   query.query.footprint = {wrap(point.uv), footprint_covariance(point.duv, sigma_pixels)};
   std::vector<GlintPlace> places = {
@@ -191,7 +192,12 @@ void Viewer::ask(const SeenPoint& point, double sigma_pixels, const SamplePlace&
 
   for (std::size_t n = 0; n < point.lamps.size(); ++n) {
     const SeenLamp& lamp = point.lamps[n];
-    if (!(lamp.visible > 0)) continue;
+    const bool is_hidden = !(lamp.visible > 0);
+    if (is_hidden && !(lamp.is_above && !place.asked_if_hidden.empty() && place.asked_if_hidden[lamp.light] &&
+                       !gathering.patch_materials[point.material]))
+      continue;
+    query.pixel = is_hidden ? GlintQuery::kNone : place.pixel;
+    query.hidden_weight = is_hidden ? static_cast<float>(lamp.weight_unshadowed / 3) : 0.0f;  // as if grey
     query.light = lamp.light;
     query.missed_by_lamp = static_cast<float>(lamp.missed);
     if (gathering.patch_materials[point.material]) {
@@ -200,7 +206,7 @@ void Viewer::ask(const SeenPoint& point, double sigma_pixels, const SamplePlace&
       continue;
     }
     query.weight = lamp.seen.glint_weight.cwiseProduct(lamp.incident.irradiance).cast<float>();
-    if (!(query.weight.maxCoeff() > 0)) continue;
+    if (!(query.weight.maxCoeff() > 0 || query.hidden_weight > 0)) continue;
     if (!turns.empty()) query.query.half_vector_turn = turns[n], query.query.lobe_cov = lamp.lobe_cov;
     for (const GlintPlace& here : places) {
       query.query.footprint = here.footprint;

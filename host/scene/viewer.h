@@ -94,6 +94,9 @@ struct SamplePlace {
   std::uint32_t pixel = 0, sample = 0;  ///< as in GlintQuery
   std::uint64_t key = 0;                ///< as in LitPoint
   std::uint32_t subpixel = 0;
+  float missed = 0;  ///< as GlintQuery::missed_by_footprint
+  /// A light: of those that shadows hide from the point, what they would show is asked. Empty: of none.
+  std::vector<bool> asked_if_hidden = {};
 };
 
 /// A scene from one camera under some lights: single rays of it.

@@ -110,5 +110,20 @@ TEST(FootprintCovariance, IsSymmetricToTheLastBit) {
   }
 }
 
+TEST(TurnOver, IsTheHalfVectorsChangeByThatOfUv) {
+  const Eigen::Matrix2d duv = (Eigen::Matrix2d() << 0.02, 0.005, -0.004, 0.03).finished(),
+                        dh = (Eigen::Matrix2d() << 0.7, -0.3, 0.2, 0.6).finished();
+  EXPECT_LT((turn_over(duv, dh, 0.125) * duv - dh).norm(), 1e-14);
+}
+
+/// A footprint that half vectors turn over by a quarter of the disk is no linear one; a fourth of it may be.
+TEST(TurnOver, IsNoneWhereTheFirstOrderIsNone) {
+  const Eigen::Matrix2d duv = 0.02 * Eigen::Matrix2d::Identity(), dh = 0.8 * Eigen::Matrix2d::Identity();
+  EXPECT_EQ(turn_over(duv, dh, 0.5).norm(), 0);
+  EXPECT_GT(turn_over(duv, dh, 0.125).norm(), 0);
+  const Eigen::Matrix2d edge_on = Eigen::Vector2d(0.02, 0.0002).asDiagonal();
+  EXPECT_EQ(turn_over(edge_on, dh, 0.125).norm(), 0);
+}
+
 }  // namespace
 }  // namespace mica::host::footprint_test
