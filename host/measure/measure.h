@@ -18,9 +18,7 @@ struct Effort {
 /// Wall-clock speed of whole calls, with transfers: a warm-up, then the repeats.
 /// @param queries coherent; thinned for evaluators that are too slow for all of them.
 /// No queries at all where sixteen take 25 times as long as a repeat may.
-/// @param used filled with the queries of a repeat when not null.
-Speed measure_speed(Evaluator* evaluator, const std::vector<Query>& queries, const Effort& effort,
-                    std::vector<Query>* used = nullptr);
+Speed measure_speed(Evaluator* evaluator, const std::vector<Query>& queries, const Effort& effort);
 
 Errors errors_of(const std::vector<float>& densities, const std::vector<double>& references);
 
@@ -29,11 +27,21 @@ struct Machine {
   double fma_peak = 0, bandwidth = 0;
 };
 
-/// Everything about one contender on coherent queries.
-/// @param few queries that `references` answers.
-Measurement measure(const Prepared& prepared, const Surface& surface, const Machine& machine,
-                    double sigma_texels, const std::vector<Query>& queries, const std::vector<Query>& few,
-                    const std::vector<double>& references, const Effort& effort);
+/// What contenders are asked on a surface.
+struct Question {
+  const Surface& surface;
+  double sigma_texels;
+  std::vector<Query> queries;      ///< coherent; those too slow for all of them are asked some
+  std::vector<Query> few;          ///< for their errors
+  std::vector<double> references;  ///< the answers to these
+};
+
+/// Everything about contenders on the same question. They are timed by turns, each once a round: what happens
+/// on a machine meanwhile happens to all of them, and the medians of their ratios hold.
+/// @param begins is called before a contender is looked at first.
+std::vector<Measurement> measure_by_turns(const std::vector<Prepared>& contenders, const Question& question,
+                                          const Machine& machine, const Effort& effort,
+                                          const std::function<void(const Prepared&)>& begins);
 
 /// Throws to stop; called between measurements with what comes next.
 using Progress = std::function<void(const std::string& what)>;

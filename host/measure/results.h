@@ -31,6 +31,7 @@ struct Measurement {
   double tolerance = 0;          ///< asked for, relative; 0: what the evaluator keeps by itself
   std::string refused;           ///< why it was not measured, or empty
   Speed speed;
+  double over_first = 0;  ///< how much faster than the cell's first that was measured, median over rounds
   Errors errors;
   double build_seconds = 0;
   std::size_t device_bytes = 0;

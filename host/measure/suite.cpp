@@ -96,20 +96,18 @@ struct Bench {
 
 Cell measure_cell(const Suite& suite, const Bench& bench, double reference_share, double sigma_texels,
                   double roughness, const Machine& machine, const Progress& progress) {
-  const std::vector<Query> queries = coherent_queries(bench.surface, sigma_texels, roughness);
-  const std::vector<Query> few = few_of(queries, sigma_texels, reference_share);
+  Question question{
+      bench.surface, sigma_texels, coherent_queries(bench.surface, sigma_texels, roughness), {}, {}};
+  question.few = few_of(question.queries, sigma_texels, reference_share);
   const std::string place = fmt::format("{} of {} texels, footprint {}, roughness {}", bench.name,
                                         bench.surface.width(), sigma_texels, roughness);
   progress(place + ": reference");
-  std::vector<double> references;
-  for (const reference::OracleResult& result : bench.oracle.evaluate(few))
-    references.push_back(result.density);
-  Cell cell{bench.name, bench.surface.width(), sigma_texels, roughness, few.size(), {}};
-  for (const Prepared& prepared : bench.contenders) {
-    progress(place + ": " + prepared.contender.label);
-    cell.measurements.push_back(
-        measure(prepared, bench.surface, machine, sigma_texels, queries, few, references, suite.effort));
-  }
+  for (const reference::OracleResult& result : bench.oracle.evaluate(question.few))
+    question.references.push_back(result.density);
+  Cell cell{bench.name, bench.surface.width(), sigma_texels, roughness, question.few.size(), {}};
+  cell.measurements =
+      measure_by_turns(bench.contenders, question, machine, suite.effort,
+                       [&](const Prepared& prepared) { progress(place + ": " + prepared.contender.label); });
   return cell;
 }
 

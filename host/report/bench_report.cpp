@@ -40,6 +40,7 @@ ordered_json to_json(const Measurement& m) {
   return {{"evaluator", m.evaluator},
           {"knob", m.knob},
           {"queries_per_second", to_json(m.speed)},
+          {"over_first", m.over_first},
           {"errors", to_json(m.errors)},
           {"build_seconds", m.build_seconds},
           {"device_bytes", m.device_bytes},
