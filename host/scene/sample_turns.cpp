@@ -47,9 +47,10 @@ template <typename Visit>
 void visit_beside(const std::vector<SeenPoint>& points, int n, int k, const Visit& visit) {
   const int place[2] = {k % n, k / n}, stride[2] = {1, n};
   for (int axis = 0; axis < 2; ++axis)
-    for (const int step : {-1, 1})
-      if (const int to = place[axis] + step; to >= 0 && to < n)
-        visit(points[static_cast<std::size_t>(k + step * stride[axis])], axis);
+    for (const int step : {-1, 1}) {
+      const int to = place[axis] + step, index = k + step * stride[axis];
+      if (to >= 0 && to < n) visit(points[static_cast<std::size_t>(index)], axis);
+    }
 }
 
 }  // namespace
