@@ -67,7 +67,7 @@ TEST(Refinement, KeepsThePicturesTolerance) {
   EXPECT_GT(before, 0.012) << "a scene that needs none";
 }
 
-/// A picture sixteen times as fine is itself off by 2% there.
+/// Of the whole shell a picture sixteen times as fine is itself off by 2%, by what it shows of the lip.
 TEST(Refinement, KeepsTheToleranceOfALip) {
   constexpr int kSide = 64;
   const Image fine = render_job({"image.width=" + std::to_string(16 * kSide),

@@ -116,7 +116,8 @@ TEST(TurnOver, IsTheHalfVectorsChangeByThatOfUv) {
   EXPECT_LT((turn_over(duv, dh, 0.125) * duv - dh).norm(), 1e-14);
 }
 
-/// A footprint that half vectors turn over by a quarter of the disk is no linear one; a fourth of it may be.
+/// Over a footprint's standard deviation half vectors turn by 0.4 of the disk's radius, or by a fourth of
+/// that.
 TEST(TurnOver, IsNoneWhereTheFirstOrderIsNone) {
   const Eigen::Matrix2d duv = 0.02 * Eigen::Matrix2d::Identity(), dh = 0.8 * Eigen::Matrix2d::Identity();
   EXPECT_EQ(turn_over(duv, dh, 0.5).norm(), 0);
